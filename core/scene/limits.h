@@ -1,0 +1,46 @@
+#ifndef CLEAVE_CORE_SCENE_LIMITS_H_
+#define CLEAVE_CORE_SCENE_LIMITS_H_
+
+#include <cstdint>
+
+// Every bound that validation holds inputs to, with its reason.
+
+namespace cleave::limits {
+
+// 6 edge uses a tet are counted in 32 bits, and 64 million tets already ask for about 60 GB.
+inline constexpr int64_t kMaxTets = 64'000'000;
+inline constexpr int64_t kMaxNodes = 64'000'000;
+
+// Bread crumb to diamond, with room for scenes in unusual units.
+inline constexpr double kMaxYoungsModulus = 1e13;  // Pa
+// Linear tets lock, and the energy loses its digits, as the material nears incompressibility.
+inline constexpr double kMaxPoissonRatio = 0.4999;
+inline constexpr double kLockingPoissonRatio = 0.45;  // a warning from here on
+inline constexpr double kFloppyPoissonRatio = 0.1;  // a collapsed tet costs little energy below it
+inline constexpr double kMaxDensity = 1e6;          // kg/m^3; osmium has 22 590
+
+inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps
+inline constexpr double kCoarseStepSeconds = 0.1;  // a warning from here on
+inline constexpr double kMinFramesPerSecond = 1e-3;
+inline constexpr double kMaxFramesPerSecond = 1e9;
+inline constexpr int64_t kMaxFrames = 10'000'000;
+inline constexpr int32_t kMaxStepsPerFrame = 100'000;
+
+inline constexpr int32_t kMaxNewtonIterations = 1000;
+inline constexpr int32_t kMaxStepHalvings = 20;
+inline constexpr int32_t kMaxPasses = 100'000;
+
+inline constexpr int32_t kMaxIntervalFrames = 1'000'000;
+
+// Enough for any scene drawn by a person; lists beyond it are a mistake or an attack.
+inline constexpr int64_t kMaxListItems = 10'000;
+inline constexpr int64_t kMaxKeyframes = 1'000'000;
+inline constexpr int64_t kMaxNameBytes = 200;
+
+// A coordinate or length in metres. Above it squares of lengths lose the last float.
+inline constexpr double kMaxLength = 1e9;
+inline constexpr double kMaxUnitScale = 1e9;
+
+}  // namespace cleave::limits
+
+#endif  // CLEAVE_CORE_SCENE_LIMITS_H_

@@ -1,0 +1,194 @@
+#ifndef CLEAVE_CORE_SCENE_SCENE_H_
+#define CLEAVE_CORE_SCENE_SCENE_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/vec3.h"
+
+// What a client asks for, as plain data in SI units. Every struct mirrors the message of the same
+// name in proto/cleave/v1/scene.proto, field names included, so that a fault's path is the same in
+// a scene file, in a request and here. Optional things are std::optional or empty vectors; a scene
+// pays for nothing that it does not hold.
+
+namespace cleave {
+
+// How a procedural mesh places its nodes.
+enum class MeshLayout {
+  kJitteredLattice,  // a grid of cells, six tets each, inner nodes moved by a random offset
+  kUnstructured,     // Delaunay tets of well-spaced random points: no preferred direction
+};
+
+// What all procedural meshes share.
+struct MeshResolution {
+  MeshLayout layout = MeshLayout::kUnstructured;
+  double cell_size = 0;  // m, wanted edge length
+  double jitter = 0.2;   // lattice only: largest offset of a node, in cells
+  uint32_t seed = 1;
+};
+
+// An axis-aligned box; centre at the origin unless `origin` moves its smallest corner.
+struct BoxMesh {
+  Vec3 origin{0, 0, 0};  // m, smallest corner
+  Vec3 size{0, 0, 0};    // m
+  MeshResolution resolution;
+};
+
+// A solid cylinder along z, its base centred on `origin`.
+struct CylinderMesh {
+  Vec3 origin{0, 0, 0};  // m
+  double radius = 0;     // m
+  double height = 0;     // m
+  MeshResolution resolution;
+};
+
+// A hollow cylinder along z, its base centred on `origin`.
+struct TubeMesh {
+  Vec3 origin{0, 0, 0};     // m
+  double outer_radius = 0;  // m
+  double inner_radius = 0;  // m
+  double height = 0;        // m
+  MeshResolution resolution;
+};
+
+// A flat cylinder: the same shape as CylinderMesh, meshed with at least two cells through its
+// thickness however thin it is.
+struct DiscMesh {
+  Vec3 origin{0, 0, 0};  // m
+  double radius = 0;     // m
+  double thickness = 0;  // m
+  MeshResolution resolution;
+};
+
+// A file beside the scene file. Only clients know it: they upload it and send a MeshAsset.
+struct MeshFile {
+  std::string path;
+};
+
+// A mesh that the server holds, named by content.
+struct MeshAsset {
+  std::string sha256;  // 64 lower-case hex digits
+};
+
+struct MeshSource {
+  std::variant<std::monostate, MeshFile, MeshAsset, BoxMesh, CylinderMesh, TubeMesh, DiscMesh>
+      source;
+  double unit_scale = 1;  // metres for one unit of the mesh's coordinates
+};
+
+// A material and the regions that it fills. Later materials win where regions overlap.
+struct Material {
+  std::string name;
+  std::vector<std::string> regions;  // names or decimal ids; empty: every region
+  double youngs_modulus = 0;         // Pa
+  double poisson_ratio = 0;
+  double density = 0;                      // kg/m^3
+  std::optional<double> tensile_strength;  // Pa, threshold of edge stress; absent: never breaks
+};
+
+struct BoxSelector {
+  Vec3 min{0, 0, 0};
+  Vec3 max{0, 0, 0};
+};
+struct SphereSelector {
+  Vec3 center{0, 0, 0};
+  double radius = 0;
+};
+// Nodes on the side that the normal points to, the plane itself included.
+struct PlaneSelector {
+  Vec3 point{0, 0, 0};
+  Vec3 normal{0, 0, 0};  // any length but 0
+};
+struct RegionSelector {
+  std::string region;  // a name or a decimal id
+};
+struct IdSelector {
+  std::vector<int64_t> ids;
+};
+using Selector = std::variant<std::monostate, BoxSelector, SphereSelector, PlaneSelector,
+                              RegionSelector, IdSelector>;
+
+// Nodes chosen by their rest positions (m, after unit_scale): all that any selector chooses.
+struct NodeSet {
+  std::string name;
+  std::vector<Selector> select;
+};
+
+// Where a moving node set is at a time. Between keyframes motion is linear in time; before the
+// first and after the last it stands still.
+struct Keyframe {
+  double time = 0;            // s
+  Vec3 translation{0, 0, 0};  // m, from rest
+  double rotation = 0;        // rad about the motion's axis, before the translation
+};
+
+// Prescribes the motion of a node set; without keyframes it pins the set where it rests.
+struct Motion {
+  std::string node_set;
+  std::array<bool, 3> axes{true, true,
+                           true};   // which of x, y, z are prescribed; the rest move freely
+  std::vector<Keyframe> keyframes;  // by ascending time
+  Vec3 rotation_center{0, 0, 0};    // m
+  Vec3 rotation_axis{0, 0, 1};      // any length but 0
+};
+
+// Velocity of nodes at the start.
+struct InitialVelocity {
+  std::string node_set;            // empty: every node
+  Vec3 velocity{0, 0, 0};          // m/s
+  Vec3 angular_velocity{0, 0, 0};  // rad/s about `center`
+  Vec3 center{0, 0, 0};            // m
+};
+
+// How fracture is staged within a step (method note, section 7). Used only where some material has
+// a tensile strength.
+struct Fracture {
+  int32_t max_passes = 60;    // break-and-solve passes a step
+  double simultaneity = 0.9;  // edges at this share of the worst failure ratio break with it
+};
+
+struct Timing {
+  double frames_per_second = 24;
+  int64_t frame_count = 48;
+  int32_t steps_per_frame = 4;
+};
+
+// The trade of speed against accuracy (method note, sections 7 and 10).
+struct Quality {
+  int32_t newton_iterations = 8;  // most a solve may take before the step is halved
+  double residual_tolerance =
+      1e-4;                      // force residual relative to inertial + elastic + external forces
+  double step_tolerance = 1e-4;  // last Newton step relative to the mean edge length
+  double linear_tolerance = 1e-3;  // relative residual of each linear solve
+  int32_t max_step_halvings = 6;
+};
+
+struct Output {
+  std::optional<double>
+      tolerance;  // m, largest error of a streamed coordinate; absent: 1e-4 of the diagonal
+  int32_t keyframe_interval = 24;    // frames
+  int32_t checkpoint_interval = 10;  // frames
+};
+
+struct Scene {
+  std::string name;
+  MeshSource mesh;
+  std::vector<Material> materials;
+  std::vector<NodeSet> node_sets;
+  std::vector<Motion> motions;
+  std::vector<InitialVelocity> initial_velocities;
+  std::optional<Vec3> gravity;  // m/s^2
+  Fracture fracture;
+  Timing timing;
+  Quality quality;
+  Output output;
+  uint32_t seed = 0;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SCENE_SCENE_H_
