@@ -32,8 +32,8 @@ inline constexpr int32_t kMaxPasses = 100'000;
 
 inline constexpr int32_t kMaxIntervalFrames = 1'000'000;
 
-// Enough for any scene drawn by a person; lists beyond it are a mistake or an attack.
-inline constexpr int64_t kMaxListItems = 10'000;
+// Enough for any scene drawn by a person. Each selector costs a pass over the nodes.
+inline constexpr int64_t kMaxListItems = 1'000;
 inline constexpr int64_t kMaxKeyframes = 1'000'000;
 inline constexpr int64_t kMaxNameBytes = 200;
 

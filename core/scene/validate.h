@@ -13,9 +13,9 @@ namespace cleave {
 // named as in the scene file. Never stops at the first fault.
 Faults ValidateScene(const Scene& scene);
 
-// The rules that need the mesh, which must have passed CheckMesh and be in metres: regions that
-// materials and selectors name exist, every tet has a material, node sets are not empty, ids are in
-// range, prescribed axes do not collide.
+// The rules that need the mesh, for a scene that passed ValidateScene and a mesh that passed
+// CheckAndOrientMesh, in metres: regions that materials and selectors name exist, every tet has a
+// material, node sets are not empty, ids are in range, prescribed axes do not collide.
 Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace cleave

@@ -1,0 +1,431 @@
+#include "core/scene/validate.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "core/scene/limits.h"
+#include "core/scene/selection.h"
+
+namespace cleave {
+namespace {
+
+std::string At(absl::string_view list, size_t index, absl::string_view field = "") {
+  return absl::StrCat(list, "[", index, "]", field.empty() ? "" : ".", field);
+}
+
+// Range checks that name field, value and range. All refuse NaN, which fails every comparison.
+class Checker {
+ public:
+  explicit Checker(Faults& faults) : faults_(faults) {}
+
+  // (low, high]
+  void Above(absl::string_view field, double value, double low, double high) {
+    if (value > low && value <= high) return;
+    faults_.Error(field, absl::StrCat(value, " is outside (", low, ", ", high, "]"));
+  }
+  // [low, high]
+  void Within(absl::string_view field, double value, double low, double high) {
+    if (value >= low && value <= high) return;
+    faults_.Error(field, absl::StrCat(value, " is outside [", low, ", ", high, "]"));
+  }
+  // (low, high)
+  void Between(absl::string_view field, double value, double low, double high) {
+    if (value > low && value < high) return;
+    faults_.Error(field, absl::StrCat(value, " is outside (", low, ", ", high, ")"));
+  }
+  void Count(absl::string_view field, int64_t value, int64_t low, int64_t high) {
+    if (value >= low && value <= high) return;
+    faults_.Error(field, absl::StrCat(value, " is outside [", low, ", ", high, "]"));
+  }
+  void Coordinates(absl::string_view field, const Vec3& value) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      Within(absl::StrCat(field, "[", axis, "]"), value[axis], -limits::kMaxLength,
+             limits::kMaxLength);
+    }
+  }
+  void Finite(absl::string_view field, const Vec3& value) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (std::isfinite(value[axis])) continue;
+      faults_.Error(absl::StrCat(field, "[", axis, "]"),
+                    absl::StrCat(value[axis], " is not a finite number"));
+    }
+  }
+  void Direction(absl::string_view field, const Vec3& value) {
+    Finite(field, value);
+    if (value == Vec3{0, 0, 0}) faults_.Error(field, "[0, 0, 0] has no direction");
+  }
+  void Name(absl::string_view field, absl::string_view name, bool required) {
+    if (required && name.empty()) faults_.Error(field, "is empty; a name is required");
+    if (static_cast<int64_t>(name.size()) > limits::kMaxNameBytes) {
+      faults_.Error(field, absl::StrCat("has ", name.size(), " bytes; at most ",
+                                        limits::kMaxNameBytes, " are allowed"));
+    }
+  }
+  // False when the list is too long to be looked through.
+  bool List(absl::string_view field, size_t size, int64_t most = limits::kMaxListItems) {
+    if (static_cast<int64_t>(size) <= most) return true;
+    faults_.Error(field, absl::StrCat("has ", size, " items; at most ", most, " are allowed"));
+    return false;
+  }
+
+ private:
+  Faults& faults_;
+};
+
+struct MeshSourceRules {
+  Faults& faults;
+  Checker& check;
+
+  void Resolution(absl::string_view shape, const MeshResolution& resolution) const {
+    const std::string field = absl::StrCat(shape, ".resolution.");
+    check.Above(absl::StrCat(field, "cell_size"), resolution.cell_size, 0, limits::kMaxLength);
+    check.Within(absl::StrCat(field, "jitter"), resolution.jitter, 0, 0.4);
+  }
+  void Length(absl::string_view field, double value) const {
+    check.Above(field, value, 0, limits::kMaxLength);
+  }
+
+  void operator()(std::monostate) const {
+    faults.Error("mesh",
+                 "names no source; one of file, asset, box, cylinder, tube, disc is required");
+  }
+  void operator()(const MeshFile& file) const {
+    faults.Error("mesh.file", absl::StrCat("\"", file.path.substr(0, limits::kMaxNameBytes),
+                                           "\" is a path of the client; upload the mesh and send "
+                                           "mesh.asset"));
+  }
+  void operator()(const MeshAsset& asset) const {
+    if (asset.sha256.size() == 64 &&
+        asset.sha256.find_first_not_of("0123456789abcdef") == std::string::npos) {
+      return;
+    }
+    faults.Error("mesh.asset", absl::StrCat("\"", asset.sha256.substr(0, limits::kMaxNameBytes),
+                                            "\" is not 64 lower-case hex digits"));
+  }
+  void operator()(const BoxMesh& box) const {
+    check.Coordinates("mesh.box.origin", box.origin);
+    for (size_t axis = 0; axis < 3; ++axis) {
+      Length(absl::StrCat("mesh.box.size[", axis, "]"), box.size[axis]);
+    }
+    Resolution("mesh.box", box.resolution);
+  }
+  void operator()(const CylinderMesh& cylinder) const {
+    check.Coordinates("mesh.cylinder.origin", cylinder.origin);
+    Length("mesh.cylinder.radius", cylinder.radius);
+    Length("mesh.cylinder.height", cylinder.height);
+    Resolution("mesh.cylinder", cylinder.resolution);
+  }
+  void operator()(const TubeMesh& tube) const {
+    check.Coordinates("mesh.tube.origin", tube.origin);
+    Length("mesh.tube.outer_radius", tube.outer_radius);
+    if (!(tube.inner_radius > 0 && tube.inner_radius < tube.outer_radius)) {
+      faults.Error("mesh.tube.inner_radius",
+                   absl::StrCat(tube.inner_radius, " is outside (0, ", tube.outer_radius,
+                                "), the outer radius"));
+    }
+    Length("mesh.tube.height", tube.height);
+    Resolution("mesh.tube", tube.resolution);
+  }
+  void operator()(const DiscMesh& disc) const {
+    check.Coordinates("mesh.disc.origin", disc.origin);
+    Length("mesh.disc.radius", disc.radius);
+    Length("mesh.disc.thickness", disc.thickness);
+    Resolution("mesh.disc", disc.resolution);
+  }
+};
+
+void CheckMaterials(const Scene& scene, Faults& faults, Checker& check) {
+  if (scene.materials.empty()) faults.Error("materials", "is empty; a body needs a material");
+  if (!check.List("materials", scene.materials.size())) return;
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    const auto at = [&](absl::string_view field) { return At("materials", i, field); };
+    check.Name(at("name"), material.name, false);
+    check.Above(at("youngs_modulus"), material.youngs_modulus, 0, limits::kMaxYoungsModulus);
+    check.Within(at("poisson_ratio"), material.poisson_ratio, 0, limits::kMaxPoissonRatio);
+    check.Above(at("density"), material.density, 0, limits::kMaxDensity);
+    if (check.List(at("regions"), material.regions.size())) {
+      for (size_t k = 0; k < material.regions.size(); ++k) {
+        check.Name(At(at("regions"), k), material.regions[k], true);
+      }
+    }
+    if (material.poisson_ratio > limits::kLockingPoissonRatio) {
+      faults.Warning(
+          at("poisson_ratio"),
+          absl::StrCat(material.poisson_ratio, " is above ", limits::kLockingPoissonRatio,
+                       ": linear tets lock, the body will be too stiff in bending"));
+    } else if (material.poisson_ratio < limits::kFloppyPoissonRatio) {
+      faults.Warning(at("poisson_ratio"),
+                     absl::StrCat(material.poisson_ratio, " is below ", limits::kFloppyPoissonRatio,
+                                  ": crushed tets resist little"));
+    }
+    if (material.tensile_strength.has_value()) {
+      const double strength = *material.tensile_strength;
+      if (!(strength >= 0)) {
+        faults.Error(at("tensile_strength"), absl::StrCat(strength, " is outside [0, inf]"));
+      } else if (strength > 10 * material.youngs_modulus) {
+        faults.Warning(
+            at("tensile_strength"),
+            absl::StrCat(strength, " Pa is over 10 times Young's modulus: never breaks"));
+      }
+    }
+  }
+}
+
+struct SelectorRules {
+  std::string field;
+  Faults& faults;
+  Checker& check;
+
+  void operator()(std::monostate) const {
+    faults.Error(field, "names no kind; one of box, sphere, plane, region, ids is required");
+  }
+  void operator()(const BoxSelector& box) const {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      // Infinite bounds select a half-space, which is useful; NaN and empty boxes are not.
+      if (box.min[axis] <= box.max[axis]) continue;
+      faults.Error(absl::StrCat(field, ".box.min[", axis, "]"),
+                   absl::StrCat(box.min[axis], " is not at most max, ", box.max[axis]));
+    }
+  }
+  void operator()(const SphereSelector& sphere) const {
+    check.Coordinates(field + ".sphere.center", sphere.center);
+    check.Above(field + ".sphere.radius", sphere.radius, 0, limits::kMaxLength);
+  }
+  void operator()(const PlaneSelector& plane) const {
+    check.Coordinates(field + ".plane.point", plane.point);
+    check.Direction(field + ".plane.normal", plane.normal);
+  }
+  void operator()(const RegionSelector& region) const {
+    check.Name(field + ".region", region.region, true);
+  }
+  void operator()(const IdSelector& selector) const {
+    if (selector.ids.empty()) faults.Error(field + ".ids.ids", "is empty");
+    check.List(field + ".ids.ids", selector.ids.size(), limits::kMaxNodes);
+  }
+};
+
+void CheckNodeSets(const Scene& scene, std::set<std::string>& names, Faults& faults,
+                   Checker& check) {
+  if (!check.List("node_sets", scene.node_sets.size())) return;
+  size_t selectors = 0;
+  for (const NodeSet& set : scene.node_sets) selectors += set.select.size();
+  if (!check.List("node_sets[*].select", selectors)) return;
+  for (size_t i = 0; i < scene.node_sets.size(); ++i) {
+    const NodeSet& set = scene.node_sets[i];
+    check.Name(At("node_sets", i, "name"), set.name, true);
+    if (!set.name.empty() && !names.insert(set.name).second) {
+      faults.Error(At("node_sets", i, "name"), absl::StrCat("\"", set.name, "\" is taken"));
+    }
+    const std::string select = At("node_sets", i, "select");
+    if (set.select.empty()) faults.Error(select, "is empty; the set would hold no node");
+    for (size_t k = 0; k < set.select.size(); ++k) {
+      std::visit(SelectorRules{At(select, k), faults, check}, set.select[k]);
+    }
+  }
+}
+
+void CheckSetName(const std::string& field, const std::string& name,
+                  const std::set<std::string>& names, Faults& faults) {
+  if (names.count(name) > 0) return;
+  faults.Error(field, name.empty() ? std::string("is empty; the name of a node set is required")
+                                   : absl::StrCat("\"", name.substr(0, limits::kMaxNameBytes),
+                                                  "\" is not the name of a node set"));
+}
+
+void CheckMotions(const Scene& scene, const std::set<std::string>& names, Faults& faults,
+                  Checker& check) {
+  if (!check.List("motions", scene.motions.size())) return;
+  for (size_t i = 0; i < scene.motions.size(); ++i) {
+    const Motion& motion = scene.motions[i];
+    const auto at = [&](absl::string_view field) { return At("motions", i, field); };
+    CheckSetName(at("node_set"), motion.node_set, names, faults);
+    check.Coordinates(at("rotation_center"), motion.rotation_center);
+    check.Direction(at("rotation_axis"), motion.rotation_axis);
+    if (!check.List(at("keyframes"), motion.keyframes.size(), limits::kMaxKeyframes)) continue;
+    bool turns = false;
+    for (size_t k = 0; k < motion.keyframes.size(); ++k) {
+      const Keyframe& keyframe = motion.keyframes[k];
+      const std::string field = At(at("keyframes"), k);
+      if (!std::isfinite(keyframe.time)) {
+        faults.Error(field + ".time", absl::StrCat(keyframe.time, " is not a finite number"));
+      } else if (k > 0 && !(keyframe.time > motion.keyframes[k - 1].time)) {
+        faults.Error(field + ".time", absl::StrCat(keyframe.time, " s is not after the previous, ",
+                                                   motion.keyframes[k - 1].time, " s"));
+      }
+      check.Coordinates(field + ".translation", keyframe.translation);
+      check.Within(field + ".rotation", keyframe.rotation, -limits::kMaxLength, limits::kMaxLength);
+      turns = turns || keyframe.rotation != 0;
+    }
+    if (turns && motion.axes != std::array<bool, 3>{true, true, true}) {
+      faults.Error(at("axes"),
+                   "leaves coordinates free, but the motion rotates: prescribe all three");
+    }
+  }
+}
+
+void CheckInitialVelocities(const Scene& scene, const std::set<std::string>& names, Faults& faults,
+                            Checker& check) {
+  if (!check.List("initial_velocities", scene.initial_velocities.size())) return;
+  for (size_t i = 0; i < scene.initial_velocities.size(); ++i) {
+    const InitialVelocity& start = scene.initial_velocities[i];
+    if (!start.node_set.empty()) {
+      CheckSetName(At("initial_velocities", i, "node_set"), start.node_set, names, faults);
+    }
+    check.Coordinates(At("initial_velocities", i, "velocity"), start.velocity);
+    check.Coordinates(At("initial_velocities", i, "angular_velocity"), start.angular_velocity);
+    check.Coordinates(At("initial_velocities", i, "center"), start.center);
+  }
+}
+
+void CheckSettings(const Scene& scene, Faults& faults, Checker& check) {
+  check.Count("fracture.max_passes", scene.fracture.max_passes, 1, limits::kMaxPasses);
+  check.Above("fracture.simultaneity", scene.fracture.simultaneity, 0, 1);
+
+  const Timing& timing = scene.timing;
+  check.Within("timing.frames_per_second", timing.frames_per_second, limits::kMinFramesPerSecond,
+               limits::kMaxFramesPerSecond);
+  check.Count("timing.frame_count", timing.frame_count, 1, limits::kMaxFrames);
+  check.Count("timing.steps_per_frame", timing.steps_per_frame, 1, limits::kMaxStepsPerFrame);
+  const double dt = 1 / (timing.frames_per_second * timing.steps_per_frame);
+  if (dt > limits::kMaxStepSeconds) {
+    faults.Error("timing.steps_per_frame", absl::StrCat("makes steps of ", dt, " s; at most ",
+                                                        limits::kMaxStepSeconds, " s are allowed"));
+  } else if (dt > limits::kCoarseStepSeconds) {
+    faults.Warning("timing.steps_per_frame",
+                   absl::StrCat("makes steps of ", dt, " s: motion will be strongly damped"));
+  }
+
+  const Quality& quality = scene.quality;
+  check.Count("quality.newton_iterations", quality.newton_iterations, 1,
+              limits::kMaxNewtonIterations);
+  check.Between("quality.residual_tolerance", quality.residual_tolerance, 0, 1);
+  check.Between("quality.step_tolerance", quality.step_tolerance, 0, 1);
+  check.Between("quality.linear_tolerance", quality.linear_tolerance, 0, 1);
+  check.Count("quality.max_step_halvings", quality.max_step_halvings, 0, limits::kMaxStepHalvings);
+
+  const Output& output = scene.output;
+  if (output.tolerance.has_value()) {
+    check.Above("output.tolerance", *output.tolerance, 0, limits::kMaxLength);
+  }
+  check.Count("output.keyframe_interval", output.keyframe_interval, 1, limits::kMaxIntervalFrames);
+  check.Count("output.checkpoint_interval", output.checkpoint_interval, 1,
+              limits::kMaxIntervalFrames);
+}
+
+void CheckCoverage(const Scene& scene, const TetMesh& mesh, const RegionIndex& regions,
+                   Faults& faults) {
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    for (size_t k = 0; k < scene.materials[i].regions.size(); ++k) {
+      const std::string& region = scene.materials[i].regions[k];
+      if (regions.Find(region).has_value()) continue;
+      faults.Error(At(At("materials", i, "regions"), k),
+                   absl::StrCat("\"", region, "\" is no region of the mesh"));
+    }
+  }
+  const std::vector<int32_t> material_of = AssignMaterials(scene.materials, mesh, regions);
+  std::map<int32_t, int64_t> bare;
+  for (int64_t tet = 0; tet < mesh.tet_count(); ++tet) {
+    if (material_of[static_cast<size_t>(tet)] < 0) ++bare[mesh.region_of(tet)];
+  }
+  for (const auto& [region, count] : bare) {
+    faults.Error("materials",
+                 absl::StrCat("region ", region, " (", count, " tets) has no material"));
+  }
+
+  double softest = INFINITY, stiffest = 0, lightest = INFINITY, heaviest = 0;
+  for (const Material& material : scene.materials) {
+    softest = std::min(softest, material.youngs_modulus);
+    stiffest = std::max(stiffest, material.youngs_modulus);
+    lightest = std::min(lightest, material.density);
+    heaviest = std::max(heaviest, material.density);
+  }
+  constexpr double kHardRatio = 1e6;
+  if (stiffest >= kHardRatio * softest) {
+    faults.Warning("materials", "Young's moduli differ a million times: solves will be slow");
+  }
+  if (heaviest >= kHardRatio * lightest) {
+    faults.Warning("materials", "densities differ a million times: solves will be slow");
+  }
+}
+
+void CheckSelections(const Scene& scene, const TetMesh& mesh, const RegionIndex& regions,
+                     Faults& faults) {
+  std::map<std::string, std::vector<int32_t>> nodes_of;
+  for (size_t i = 0; i < scene.node_sets.size(); ++i) {
+    const NodeSet& set = scene.node_sets[i];
+    for (size_t k = 0; k < set.select.size(); ++k) {
+      const std::string field = At(At("node_sets", i, "select"), k);
+      if (const auto* region = std::get_if<RegionSelector>(&set.select[k])) {
+        if (!regions.Find(region->region).has_value()) {
+          faults.Error(field + ".region",
+                       absl::StrCat("\"", region->region, "\" is no region of the mesh"));
+        }
+      } else if (const auto* chosen = std::get_if<IdSelector>(&set.select[k])) {
+        for (size_t n = 0; n < chosen->ids.size(); ++n) {
+          if (chosen->ids[n] >= 0 && chosen->ids[n] < mesh.node_count()) continue;
+          faults.Error(At(field + ".ids.ids", n), absl::StrCat(chosen->ids[n], " is outside [0, ",
+                                                               mesh.node_count() - 1, "]"));
+        }
+      }
+    }
+    std::vector<int32_t> nodes = SelectNodes(set, mesh, regions);
+    if (nodes.empty()) {
+      faults.Error(At("node_sets", i),
+                   absl::StrCat("\"", set.name, "\" holds no node of the mesh"));
+    }
+    nodes_of.emplace(set.name, std::move(nodes));
+  }
+
+  // Two motions may share a node only where they prescribe different axes of it.
+  std::vector<std::array<int32_t, 3>> mover(static_cast<size_t>(mesh.node_count()), {-1, -1, -1});
+  std::set<std::pair<int32_t, int32_t>> reported;
+  for (size_t i = 0; i < scene.motions.size(); ++i) {
+    const auto found = nodes_of.find(scene.motions[i].node_set);
+    if (found == nodes_of.end()) continue;
+    for (const int32_t node : found->second) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        if (!scene.motions[i].axes[axis]) continue;
+        int32_t& owner = mover[static_cast<size_t>(node)][axis];
+        if (owner >= 0 && reported.insert({owner, static_cast<int32_t>(i)}).second) {
+          faults.Error(At("motions", i, "node_set"),
+                       absl::StrCat("node ", node, " is already moved along ",
+                                    std::string(1, "xyz"[axis]), " by motions[", owner, "]"));
+        }
+        owner = static_cast<int32_t>(i);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Faults ValidateScene(const Scene& scene) {
+  Faults faults;
+  Checker check(faults);
+  check.Name("name", scene.name, false);
+  std::visit(MeshSourceRules{faults, check}, scene.mesh.source);
+  check.Above("mesh.unit_scale", scene.mesh.unit_scale, 0, limits::kMaxUnitScale);
+  CheckMaterials(scene, faults, check);
+  std::set<std::string> names;
+  CheckNodeSets(scene, names, faults, check);
+  CheckMotions(scene, names, faults, check);
+  CheckInitialVelocities(scene, names, faults, check);
+  if (scene.gravity.has_value()) check.Coordinates("gravity", *scene.gravity);
+  CheckSettings(scene, faults, check);
+  return faults;
+}
+
+Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh) {
+  Faults faults;
+  const RegionIndex regions(mesh);
+  CheckCoverage(scene, mesh, regions, faults);
+  CheckSelections(scene, mesh, regions, faults);
+  return faults;
+}
+
+}  // namespace cleave

@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "proto/convert/scene.h"
+
+namespace cleave {
+namespace {
+
+using Numbers = google::protobuf::RepeatedField<double>;
+
+// Converts one message after another, remembering what was wrong.
+class Converter {
+ public:
+  explicit Converter(Faults& faults) : faults_(faults) {}
+
+  Vec3 Vector(const std::string& field, const Numbers& numbers, const Vec3& if_empty) {
+    if (numbers.empty()) return if_empty;
+    if (numbers.size() != 3) {
+      faults_.Error(field, absl::StrCat("has ", numbers.size(), " numbers; three are required"));
+      return if_empty;
+    }
+    return {numbers[0], numbers[1], numbers[2]};
+  }
+
+  Vec3 RequiredVector(const std::string& field, const Numbers& numbers, const Vec3& stand_in) {
+    if (numbers.empty()) {
+      faults_.Error(field, "is missing; three numbers are required");
+    }
+    return Vector(field, numbers, stand_in);
+  }
+
+  MeshResolution Resolution(const std::string& field, const v1::MeshResolution& message) {
+    MeshResolution resolution;
+    switch (message.layout()) {
+      case v1::MESH_LAYOUT_UNSPECIFIED:
+      case v1::MESH_LAYOUT_UNSTRUCTURED:
+        resolution.layout = MeshLayout::kUnstructured;
+        break;
+      case v1::MESH_LAYOUT_JITTERED_LATTICE:
+        resolution.layout = MeshLayout::kJitteredLattice;
+        break;
+      default:
+        faults_.Error(field + ".layout",
+                      absl::StrCat(static_cast<int>(message.layout()), " is not a MeshLayout"));
+    }
+    resolution.cell_size = message.cell_size();
+    if (message.has_jitter()) resolution.jitter = message.jitter();
+    if (message.has_seed()) resolution.seed = message.seed();
+    return resolution;
+  }
+
+  MeshSource Mesh(const v1::MeshSource& message) {
+    MeshSource mesh;
+    if (message.has_unit_scale()) mesh.unit_scale = message.unit_scale();
+    switch (message.source_case()) {
+      case v1::MeshSource::kFile:
+        mesh.source = MeshFile{message.file()};
+        break;
+      case v1::MeshSource::kAsset:
+        mesh.source = MeshAsset{message.asset()};
+        break;
+      case v1::MeshSource::kBox: {
+        BoxMesh box;
+        box.origin = Vector("mesh.box.origin", message.box().origin(), box.origin);
+        box.size = RequiredVector("mesh.box.size", message.box().size(), {1, 1, 1});
+        box.resolution = Resolution("mesh.box.resolution", message.box().resolution());
+        mesh.source = box;
+        break;
+      }
+      case v1::MeshSource::kCylinder: {
+        CylinderMesh cylinder;
+        cylinder.origin = Vector("mesh.cylinder.origin", message.cylinder().origin(), {0, 0, 0});
+        cylinder.radius = message.cylinder().radius();
+        cylinder.height = message.cylinder().height();
+        cylinder.resolution =
+            Resolution("mesh.cylinder.resolution", message.cylinder().resolution());
+        mesh.source = cylinder;
+        break;
+      }
+      case v1::MeshSource::kTube: {
+        TubeMesh tube;
+        tube.origin = Vector("mesh.tube.origin", message.tube().origin(), {0, 0, 0});
+        tube.outer_radius = message.tube().outer_radius();
+        tube.inner_radius = message.tube().inner_radius();
+        tube.height = message.tube().height();
+        tube.resolution = Resolution("mesh.tube.resolution", message.tube().resolution());
+        mesh.source = tube;
+        break;
+      }
+      case v1::MeshSource::kDisc: {
+        DiscMesh disc;
+        disc.origin = Vector("mesh.disc.origin", message.disc().origin(), {0, 0, 0});
+        disc.radius = message.disc().radius();
+        disc.thickness = message.disc().thickness();
+        disc.resolution = Resolution("mesh.disc.resolution", message.disc().resolution());
+        mesh.source = disc;
+        break;
+      }
+      case v1::MeshSource::SOURCE_NOT_SET:
+        break;
+    }
+    return mesh;
+  }
+
+  Selector OneSelector(const std::string& field, const v1::Selector& message) {
+    switch (message.kind_case()) {
+      case v1::Selector::kBox:
+        return BoxSelector{RequiredVector(field + ".box.min", message.box().min(), {0, 0, 0}),
+                           RequiredVector(field + ".box.max", message.box().max(), {0, 0, 0})};
+      case v1::Selector::kSphere:
+        return SphereSelector{
+            RequiredVector(field + ".sphere.center", message.sphere().center(), {0, 0, 0}),
+            message.sphere().radius()};
+      case v1::Selector::kPlane:
+        return PlaneSelector{
+            RequiredVector(field + ".plane.point", message.plane().point(), {0, 0, 0}),
+            RequiredVector(field + ".plane.normal", message.plane().normal(), {0, 0, 1})};
+      case v1::Selector::kRegion:
+        return RegionSelector{message.region()};
+      case v1::Selector::kIds:
+        return IdSelector{{message.ids().ids().begin(), message.ids().ids().end()}};
+      case v1::Selector::KIND_NOT_SET:
+        break;
+    }
+    return std::monostate{};
+  }
+
+  std::array<bool, 3> Axes(const std::string& field,
+                           const google::protobuf::RepeatedField<int>& axes) {
+    if (axes.empty()) return {true, true, true};
+    std::array<bool, 3> prescribed{false, false, false};
+    for (int i = 0; i < axes.size(); ++i) {
+      if (axes[i] < v1::AXIS_X || axes[i] > v1::AXIS_Z) {
+        faults_.Error(absl::StrCat(field, "[", i, "]"),
+                      absl::StrCat(axes[i], " is not one of AXIS_X, AXIS_Y, AXIS_Z"));
+        continue;
+      }
+      prescribed[static_cast<size_t>(axes[i] - v1::AXIS_X)] = true;
+    }
+    return prescribed;
+  }
+
+  Motion OneMotion(const std::string& field, const v1::Motion& message) {
+    Motion motion;
+    motion.node_set = message.node_set();
+    motion.axes = Axes(field + ".axes", message.axes());
+    motion.rotation_center =
+        Vector(field + ".rotation_center", message.rotation_center(), motion.rotation_center);
+    motion.rotation_axis =
+        Vector(field + ".rotation_axis", message.rotation_axis(), motion.rotation_axis);
+    for (int i = 0; i < message.keyframes_size(); ++i) {
+      const v1::Keyframe& keyframe = message.keyframes(i);
+      motion.keyframes.push_back({keyframe.time(),
+                                  Vector(absl::StrCat(field, ".keyframes[", i, "].translation"),
+                                         keyframe.translation(), {0, 0, 0}),
+                                  keyframe.rotation()});
+    }
+    return motion;
+  }
+
+ private:
+  Faults& faults_;
+};
+
+Material MaterialFromMessage(const v1::Material& message) {
+  Material material;
+  material.name = message.name();
+  material.regions.assign(message.regions().begin(), message.regions().end());
+  material.youngs_modulus = message.youngs_modulus();
+  material.poisson_ratio = message.poisson_ratio();
+  material.density = message.density();
+  if (message.has_tensile_strength()) material.tensile_strength = message.tensile_strength();
+  return material;
+}
+
+void ReadSettings(const v1::Scene& message, Scene& scene) {
+  const v1::Fracture& fracture = message.fracture();
+  if (fracture.has_max_passes()) scene.fracture.max_passes = fracture.max_passes();
+  if (fracture.has_simultaneity()) scene.fracture.simultaneity = fracture.simultaneity();
+
+  const v1::Timing& timing = message.timing();
+  if (timing.has_frames_per_second()) scene.timing.frames_per_second = timing.frames_per_second();
+  if (timing.has_frame_count()) scene.timing.frame_count = timing.frame_count();
+  if (timing.has_steps_per_frame()) scene.timing.steps_per_frame = timing.steps_per_frame();
+
+  const v1::Quality& quality = message.quality();
+  if (quality.has_newton_iterations()) {
+    scene.quality.newton_iterations = quality.newton_iterations();
+  }
+  if (quality.has_residual_tolerance()) {
+    scene.quality.residual_tolerance = quality.residual_tolerance();
+  }
+  if (quality.has_step_tolerance()) scene.quality.step_tolerance = quality.step_tolerance();
+  if (quality.has_linear_tolerance()) scene.quality.linear_tolerance = quality.linear_tolerance();
+  if (quality.has_max_step_halvings()) {
+    scene.quality.max_step_halvings = quality.max_step_halvings();
+  }
+
+  const v1::Output& output = message.output();
+  if (output.has_tolerance()) scene.output.tolerance = output.tolerance();
+  if (output.has_keyframe_interval()) {
+    scene.output.keyframe_interval = output.keyframe_interval();
+  }
+  if (output.has_checkpoint_interval()) {
+    scene.output.checkpoint_interval = output.checkpoint_interval();
+  }
+}
+
+}  // namespace
+
+Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
+  Converter convert(faults);
+  Scene scene;
+  scene.name = message.name();
+  scene.mesh = convert.Mesh(message.mesh());
+  for (const v1::Material& material : message.materials()) {
+    scene.materials.push_back(MaterialFromMessage(material));
+  }
+  for (int i = 0; i < message.node_sets_size(); ++i) {
+    NodeSet& set = scene.node_sets.emplace_back();
+    set.name = message.node_sets(i).name();
+    for (int k = 0; k < message.node_sets(i).select_size(); ++k) {
+      set.select.push_back(convert.OneSelector(absl::StrCat("node_sets[", i, "].select[", k, "]"),
+                                               message.node_sets(i).select(k)));
+    }
+  }
+  for (int i = 0; i < message.motions_size(); ++i) {
+    scene.motions.push_back(
+        convert.OneMotion(absl::StrCat("motions[", i, "]"), message.motions(i)));
+  }
+  for (int i = 0; i < message.initial_velocities_size(); ++i) {
+    const v1::InitialVelocity& start = message.initial_velocities(i);
+    const std::string field = absl::StrCat("initial_velocities[", i, "].");
+    scene.initial_velocities.push_back(
+        {start.node_set(), convert.Vector(field + "velocity", start.velocity(), {0, 0, 0}),
+         convert.Vector(field + "angular_velocity", start.angular_velocity(), {0, 0, 0}),
+         convert.Vector(field + "center", start.center(), {0, 0, 0})});
+  }
+  if (!message.gravity().empty()) {
+    scene.gravity = convert.Vector("gravity", message.gravity(), {0, 0, 0});
+  }
+  ReadSettings(message, scene);
+  scene.seed = message.seed();
+  return scene;
+}
+
+}  // namespace cleave

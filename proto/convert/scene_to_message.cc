@@ -1,0 +1,155 @@
+#include "proto/convert/scene.h"
+
+namespace cleave {
+namespace {
+
+using Numbers = google::protobuf::RepeatedField<double>;
+
+void Write(const Vec3& vector, Numbers* numbers) { numbers->Add(vector.begin(), vector.end()); }
+
+void Write(const MeshResolution& resolution, v1::MeshResolution* message) {
+  message->set_layout(resolution.layout == MeshLayout::kJitteredLattice
+                          ? v1::MESH_LAYOUT_JITTERED_LATTICE
+                          : v1::MESH_LAYOUT_UNSTRUCTURED);
+  message->set_cell_size(resolution.cell_size);
+  message->set_jitter(resolution.jitter);
+  message->set_seed(resolution.seed);
+}
+
+struct WriteSource {
+  v1::MeshSource* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const MeshFile& file) const { message->set_file(file.path); }
+  void operator()(const MeshAsset& asset) const { message->set_asset(asset.sha256); }
+  void operator()(const BoxMesh& box) const {
+    v1::BoxMesh* to = message->mutable_box();
+    Write(box.origin, to->mutable_origin());
+    Write(box.size, to->mutable_size());
+    Write(box.resolution, to->mutable_resolution());
+  }
+  void operator()(const CylinderMesh& cylinder) const {
+    v1::CylinderMesh* to = message->mutable_cylinder();
+    Write(cylinder.origin, to->mutable_origin());
+    to->set_radius(cylinder.radius);
+    to->set_height(cylinder.height);
+    Write(cylinder.resolution, to->mutable_resolution());
+  }
+  void operator()(const TubeMesh& tube) const {
+    v1::TubeMesh* to = message->mutable_tube();
+    Write(tube.origin, to->mutable_origin());
+    to->set_outer_radius(tube.outer_radius);
+    to->set_inner_radius(tube.inner_radius);
+    to->set_height(tube.height);
+    Write(tube.resolution, to->mutable_resolution());
+  }
+  void operator()(const DiscMesh& disc) const {
+    v1::DiscMesh* to = message->mutable_disc();
+    Write(disc.origin, to->mutable_origin());
+    to->set_radius(disc.radius);
+    to->set_thickness(disc.thickness);
+    Write(disc.resolution, to->mutable_resolution());
+  }
+};
+
+struct WriteSelector {
+  v1::Selector* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const BoxSelector& box) const {
+    Write(box.min, message->mutable_box()->mutable_min());
+    Write(box.max, message->mutable_box()->mutable_max());
+  }
+  void operator()(const SphereSelector& sphere) const {
+    Write(sphere.center, message->mutable_sphere()->mutable_center());
+    message->mutable_sphere()->set_radius(sphere.radius);
+  }
+  void operator()(const PlaneSelector& plane) const {
+    Write(plane.point, message->mutable_plane()->mutable_point());
+    Write(plane.normal, message->mutable_plane()->mutable_normal());
+  }
+  void operator()(const RegionSelector& region) const { message->set_region(region.region); }
+  void operator()(const IdSelector& selector) const {
+    message->mutable_ids()->mutable_ids()->Add(selector.ids.begin(), selector.ids.end());
+  }
+};
+
+void WriteMotion(const Motion& motion, v1::Motion* message) {
+  message->set_node_set(motion.node_set);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (motion.axes[static_cast<size_t>(axis)]) {
+      message->add_axes(static_cast<v1::Axis>(v1::AXIS_X + axis));
+    }
+  }
+  for (const Keyframe& keyframe : motion.keyframes) {
+    v1::Keyframe* to = message->add_keyframes();
+    to->set_time(keyframe.time);
+    Write(keyframe.translation, to->mutable_translation());
+    to->set_rotation(keyframe.rotation);
+  }
+  Write(motion.rotation_center, message->mutable_rotation_center());
+  Write(motion.rotation_axis, message->mutable_rotation_axis());
+}
+
+void WriteSettings(const Scene& scene, v1::Scene& message) {
+  message.mutable_fracture()->set_max_passes(scene.fracture.max_passes);
+  message.mutable_fracture()->set_simultaneity(scene.fracture.simultaneity);
+
+  v1::Timing* timing = message.mutable_timing();
+  timing->set_frames_per_second(scene.timing.frames_per_second);
+  timing->set_frame_count(scene.timing.frame_count);
+  timing->set_steps_per_frame(scene.timing.steps_per_frame);
+
+  v1::Quality* quality = message.mutable_quality();
+  quality->set_newton_iterations(scene.quality.newton_iterations);
+  quality->set_residual_tolerance(scene.quality.residual_tolerance);
+  quality->set_step_tolerance(scene.quality.step_tolerance);
+  quality->set_linear_tolerance(scene.quality.linear_tolerance);
+  quality->set_max_step_halvings(scene.quality.max_step_halvings);
+
+  v1::Output* output = message.mutable_output();
+  if (scene.output.tolerance.has_value()) output->set_tolerance(*scene.output.tolerance);
+  output->set_keyframe_interval(scene.output.keyframe_interval);
+  output->set_checkpoint_interval(scene.output.checkpoint_interval);
+}
+
+}  // namespace
+
+v1::Scene MessageFromScene(const Scene& scene) {
+  v1::Scene message;
+  message.set_name(scene.name);
+  message.mutable_mesh()->set_unit_scale(scene.mesh.unit_scale);
+  std::visit(WriteSource{message.mutable_mesh()}, scene.mesh.source);
+  for (const Material& material : scene.materials) {
+    v1::Material* to = message.add_materials();
+    to->set_name(material.name);
+    to->mutable_regions()->Add(material.regions.begin(), material.regions.end());
+    to->set_youngs_modulus(material.youngs_modulus);
+    to->set_poisson_ratio(material.poisson_ratio);
+    to->set_density(material.density);
+    if (material.tensile_strength.has_value()) {
+      to->set_tensile_strength(*material.tensile_strength);
+    }
+  }
+  for (const NodeSet& set : scene.node_sets) {
+    v1::NodeSet* to = message.add_node_sets();
+    to->set_name(set.name);
+    for (const Selector& selector : set.select) {
+      std::visit(WriteSelector{to->add_select()}, selector);
+    }
+  }
+  for (const Motion& motion : scene.motions) WriteMotion(motion, message.add_motions());
+  for (const InitialVelocity& start : scene.initial_velocities) {
+    v1::InitialVelocity* to = message.add_initial_velocities();
+    to->set_node_set(start.node_set);
+    Write(start.velocity, to->mutable_velocity());
+    Write(start.angular_velocity, to->mutable_angular_velocity());
+    Write(start.center, to->mutable_center());
+  }
+  if (scene.gravity.has_value()) Write(*scene.gravity, message.mutable_gravity());
+  WriteSettings(scene, message);
+  message.set_seed(scene.seed);
+  return message;
+}
+
+}  // namespace cleave
