@@ -36,7 +36,7 @@ struct Incidence {
 };
 
 // Precondition: every node id of every tet is in range and no tet names a node twice
-// (mesh_check.h); 6 * tet count fits in 31 bits (limits.h).
+// (mesh_check.h); 6 * tet count fits in 31 bits (mesh_limits.h).
 Incidence BuildIncidence(const TetMesh& mesh);
 
 }  // namespace cleave

@@ -3,13 +3,12 @@
 
 #include <cstdint>
 
-// Every bound that validation holds inputs to, with its reason.
+#include "core/mesh/mesh_limits.h"  // IWYU pragma: export
+
+// Every bound that validation holds inputs to, with its reason; those of meshes and lengths are in
+// mesh_limits.h.
 
 namespace cleave::limits {
-
-// 6 edge uses a tet are counted in 32 bits, and 64 million tets already ask for about 60 GB.
-inline constexpr int64_t kMaxTets = 64'000'000;
-inline constexpr int64_t kMaxNodes = 64'000'000;
 
 // Bread crumb to diamond, with room for scenes in unusual units.
 inline constexpr double kMaxYoungsModulus = 1e13;  // Pa
@@ -37,8 +36,6 @@ inline constexpr int64_t kMaxListItems = 1'000;
 inline constexpr int64_t kMaxKeyframes = 1'000'000;
 inline constexpr int64_t kMaxNameBytes = 200;
 
-// A coordinate or length in metres. Above it squares of lengths lose the last float.
-inline constexpr double kMaxLength = 1e9;
 inline constexpr double kMaxUnitScale = 1e9;
 
 }  // namespace cleave::limits
