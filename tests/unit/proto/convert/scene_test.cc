@@ -1,0 +1,165 @@
+#include "proto/convert/scene.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+namespace cleave {
+namespace {
+
+using google::protobuf::TextFormat;
+using google::protobuf::util::MessageDifferencer;
+
+// Every field set, none to its default.
+constexpr char kEveryField[] = R"pb(
+  name: "everything"
+  mesh {
+    tube {
+      origin: [ 1, 2, 3 ]
+      outer_radius: 0.5
+      inner_radius: 0.4
+      height: 2
+      resolution { layout: MESH_LAYOUT_JITTERED_LATTICE cell_size: 0.1 jitter: 0.3 seed: 9 }
+    }
+    unit_scale: 0.001
+  }
+  materials {
+    name: "clay"
+    regions: "1"
+    regions: "rim"
+    youngs_modulus: 2e9
+    poisson_ratio: 0.2
+    density: 1900
+    tensile_strength: 3e6
+  }
+  node_sets {
+    name: "grip"
+    select {
+      box {
+        min: [ 0, 0, 0 ]
+        max: [ 1, 1, 1 ]
+      }
+    }
+    select {
+      sphere {
+        center: [ 1, 0, 0 ]
+        radius: 2
+      }
+    }
+    select {
+      plane {
+        point: [ 0, 1, 0 ]
+        normal: [ 0, 0, 2 ]
+      }
+    }
+    select { region: "rim" }
+    select { ids { ids: [ 3, 5 ] } }
+  }
+  motions {
+    node_set: "grip"
+    axes: [ AXIS_X, AXIS_Z ]
+    keyframes {
+      time: 0.5
+      translation: [ 1, 2, 3 ]
+      rotation: 0.25
+    }
+    rotation_center: [ 4, 5, 6 ]
+    rotation_axis: [ 1, 1, 0 ]
+  }
+  initial_velocities {
+    node_set: "grip"
+    velocity: [ 1, 0, 0 ]
+    angular_velocity: [ 0, 2, 0 ]
+    center: [ 0, 0, 3 ]
+  }
+  gravity: [ 0, 0, -9.81 ]
+  fracture { max_passes: 7 simultaneity: 0.8 }
+  timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
+  quality {
+    newton_iterations: 4
+    residual_tolerance: 1e-5
+    step_tolerance: 1e-6
+    linear_tolerance: 1e-2
+    max_step_halvings: 2
+  }
+  output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
+  seed: 77
+)pb";
+
+TEST(Scene, KeepsEveryFieldBothWays) {
+  v1::Scene message;
+  ASSERT_TRUE(TextFormat::ParseFromString(kEveryField, &message));
+  Faults faults;
+  const Scene scene = SceneFromMessage(message, faults);
+  EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+  std::string difference;
+  MessageDifferencer differencer;
+  differencer.ReportDifferencesToString(&difference);
+  EXPECT_TRUE(differencer.Compare(message, MessageFromScene(scene))) << difference;
+}
+
+TEST(Scene, KeepsEveryMeshSource) {
+  for (const char* text : {R"pb(mesh { asset: "0123" })pb", R"pb(mesh { file: "bar.msh" })pb",
+                           R"pb(mesh {
+                                  box {
+                                    origin: [ 0, 0, 1 ]
+                                    size: [ 1, 2, 3 ]
+                                    resolution { cell_size: 1 }
+                                  }
+                                })pb",
+                           R"pb(mesh {
+                                  cylinder {
+                                    radius: 1
+                                    height: 2
+                                    resolution { cell_size: 1 }
+                                  }
+                                })pb",
+                           R"pb(mesh {
+                                  disc {
+                                    radius: 1
+                                    thickness: 2
+                                    resolution { cell_size: 1 }
+                                  }
+                                })pb"}) {
+    v1::Scene message;
+    ASSERT_TRUE(TextFormat::ParseFromString(text, &message));
+    Faults faults;
+    const v1::Scene once = MessageFromScene(SceneFromMessage(message, faults));
+    EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+    EXPECT_EQ(once.mesh().source_case(), message.mesh().source_case());
+    EXPECT_TRUE(MessageDifferencer::Equals(once, MessageFromScene(SceneFromMessage(once, faults))));
+  }
+}
+
+TEST(Scene, TakesDefaultsForAbsentFields) {
+  Faults faults;
+  const Scene scene = SceneFromMessage(v1::Scene(), faults);
+  EXPECT_TRUE(faults.ok());
+  EXPECT_FALSE(scene.gravity.has_value());
+  EXPECT_FALSE(scene.output.tolerance.has_value());
+  EXPECT_EQ(scene.timing.frame_count, Timing().frame_count);
+  EXPECT_EQ(scene.quality.linear_tolerance, Quality().linear_tolerance);
+  EXPECT_EQ(scene.mesh.unit_scale, 1);
+}
+
+TEST(Scene, ReportsEveryVectorThatIsNotThreeNumbersAndEveryUnknownEnum) {
+  v1::Scene message;
+  message.add_gravity(1);
+  message.mutable_mesh()->mutable_box()->mutable_resolution()->set_layout(
+      static_cast<v1::MeshLayout>(42));
+  message.add_node_sets()->add_select()->mutable_box()->add_min(1);
+  message.add_motions()->add_axes(static_cast<v1::Axis>(9));
+  message.mutable_motions(0)->add_keyframes()->add_translation(1);
+  Faults faults;
+  SceneFromMessage(message, faults);
+  std::vector<std::string> fields;
+  for (const Fault& fault : faults.errors()) fields.push_back(fault.field);
+  EXPECT_THAT(fields, testing::UnorderedElementsAre(
+                          "gravity", "mesh.box.size", "mesh.box.resolution.layout",
+                          "node_sets[0].select[0].box.min", "node_sets[0].select[0].box.max",
+                          "motions[0].axes[0]", "motions[0].keyframes[0].translation"));
+}
+
+}  // namespace
+}  // namespace cleave
