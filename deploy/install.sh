@@ -6,7 +6,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config          # build
   libgrpc++-dev protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev libeigen3-dev libtbb-dev libzstd-dev libssl-dev libxxhash-dev
-  libgtest-dev libgmock-dev
+  libgtest-dev libgmock-dev python3                  # tests
 )
 
 missing=()
