@@ -1,0 +1,149 @@
+#ifndef CLEAVE_CORE_DAMAGE_FRACTURE_H_
+#define CLEAVE_CORE_DAMAGE_FRACTURE_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/base/broadcast.h"
+#include "core/base/bytes.h"
+#include "core/base/vec3.h"
+#include "core/damage/edge_mask.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/tet_mesh.h"
+
+namespace cleave {
+
+// A tet whose damage factor falls below this carries nothing worth solving for: it is dead.
+inline constexpr double kDeadFactor = 1e-3;
+
+// How an edge's stress follows from the stresses of its live tets.
+enum class StressAggregation {
+  kMean,  // weighted by rest volume; slivers do not break edges by themselves
+  kMax,
+};
+
+struct FractureSettings {
+  double simultaneity = 0.9;  // edges at this share of their component's worst ratio break with it
+  StressAggregation aggregation = StressAggregation::kMean;
+};
+
+// A tet whose damage factor fell.
+struct ChangedTet {
+  int32_t tet;
+  double previous_factor;
+};
+
+// What one break pass did. The spans stay valid until the next call on the same EdgeFracture.
+struct PassResult {
+  // Largest failure ratio over live edges, all edges unbroken so far. Below 1 nothing broke; it is
+  // then only an upper bound when no tet's stress reached the smallest threshold.
+  double max_ratio = 0;
+  int32_t max_edge = -1;  // an edge of that ratio, the lowest id; -1 when only the bound is known
+  std::span<const int32_t> broken_edges;     // newly broken, ascending, orphans included
+  std::span<const ChangedTet> changed_tets;  // ascending
+};
+
+// The fracture state of a mesh: which edges are broken, and what that leaves of every tet. Source:
+// method note, sections 2, 3 and 7; the departures from the paper are listed there.
+//
+// An edge's stress is d^T P N / |d| (Pa per rest area), d its current and N its unit rest vector, P
+// the undamaged first Piola-Kirchhoff stress of a tet, taken over the edge's live tets; a tet with
+// J <= 0 counts as stress 0 because it would read compression as tension. An edge fails when that
+// reaches its threshold. A tet that loses edges keeps the share of its stress that the unbroken
+// ones carry, frozen from then on; it dies once its vertices are separated.
+//
+// Damage factors never rise and broken edges never mend. A live edge is an unbroken one: the orphan
+// rule breaks an edge when its last live tet dies.
+//
+// Not thread-safe; loops run on the caller's TBB arena. Results are the same bits for any number of
+// threads. No call but the constructor and Restore allocates once its scratch has grown.
+class EdgeFracture {
+ public:
+  // `mesh`, `incidence` and what `thresholds` points to must outlive this object. Rest volumes are
+  // positive. Thresholds are in Pa, a record an edge or one for all; infinite never breaks, 0 is
+  // cut here and now; never negative or NaN. simultaneity is in (0, 1].
+  EdgeFracture(const TetMesh& mesh, const Incidence& incidence, Broadcast<double> thresholds,
+               const FractureSettings& settings);
+
+  // One break pass: finds failure ratios; in each connected component of the live mesh breaks every
+  // edge whose ratio is at least max(1, simultaneity * the component's worst ratio); weakens tets;
+  // then applies separation, orphans and hinges until nothing changes. Call it after each solve of
+  // a step until no edge breaks. `positions` (m) has a node each, `effective_stress` (Pa, without
+  // the damage factor) a tet each; stresses of dead tets are not read. NaN breaks nothing.
+  PassResult BreakPass(std::span<const Vec3> positions,
+                       std::span<const Eigen::Matrix3d> effective_stress);
+
+  // The aggregated stress of every edge, Pa; 0 for broken edges. `stresses` has an edge each.
+  void EdgeStresses(std::span<const Vec3> positions,
+                    std::span<const Eigen::Matrix3d> effective_stress, std::span<double> stresses);
+
+  // Share of its stiffness that each tet has left: 1 intact, 0 dead. Scales energy, force, Hessian.
+  std::span<const double> damage_factors() const { return factors_; }
+  std::span<const EdgeMask> tet_masks() const { return masks_; }
+  // Nonzero for a broken edge; an edge each.
+  std::span<const uint8_t> edge_broken() const { return broken_; }
+  std::vector<int32_t> BrokenEdges() const;  // ascending
+  int64_t broken_edge_count() const { return broken_count_; }
+  // Components of the nodes through unbroken edges (components.h); counted anew after a change.
+  int32_t ComponentCount();
+
+  // Everything that BreakPass depends on besides the constructor's arguments. Restore refuses
+  // (DataLoss) what cannot belong to this mesh, and then changes nothing.
+  void Save(ByteWriter& out) const;
+  absl::Status Restore(ByteReader& in);
+
+ private:
+  using Stress = std::span<const Eigen::Matrix3d>;
+
+  // Sets `upright_`; returns the largest Frobenius norm of an upright tet's stress.
+  double WeighTets(std::span<const Vec3> positions, Stress effective_stress);
+  double EdgeStress(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
+  void CollectFailing();
+  // Breaks the edges in `pending_`, weakens their tets and applies the rules to a fixed point.
+  void BreakPending(std::span<const Vec3> positions, Stress effective_stress);
+  void MarkBroken(int32_t edge);
+  void Weaken(int32_t tet, double factor);
+  double UnbrokenShare(int32_t tet, std::span<const Vec3> positions, Stress effective_stress) const;
+  void BreakOrphans(int32_t tet);
+  void KillHinges(int32_t node);
+  void UpdateComponents();
+
+  const TetMesh& mesh_;
+  const Incidence& incidence_;
+  const Broadcast<double> thresholds_;
+  const FractureSettings settings_;
+  double min_threshold_ = 0;          // Pa
+  std::vector<double> rest_volumes_;  // m^3, a tet each
+  std::vector<uint8_t> broken_;       // an edge each
+  std::vector<EdgeMask> masks_;       // a tet each
+  std::vector<double> factors_;       // a tet each
+  int64_t broken_count_ = 0;
+  std::vector<int32_t> components_;  // a node each; of an older state unless components_fresh_
+  int32_t component_count_ = 0;
+  bool components_fresh_ = false;
+
+  // Scratch of a pass.
+  std::vector<uint8_t> upright_;  // a tet each: live and J > 0
+  std::vector<double> ratios_;    // an edge each
+  struct BlockMax {
+    double value;
+    int32_t item;
+  };
+  std::vector<BlockMax> block_max_;
+  std::vector<double> component_max_;
+  std::vector<int32_t> pending_;  // edges about to break
+  std::vector<int32_t> new_broken_;
+  std::vector<ChangedTet> changed_;
+  std::vector<int32_t> newly_dead_;
+  std::vector<int32_t> touched_tets_;
+  std::vector<int32_t> touched_nodes_;
+  std::vector<int32_t> cluster_of_;  // of the live tets of one node
+  std::vector<double> cluster_volume_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_DAMAGE_FRACTURE_H_
