@@ -1,0 +1,19 @@
+#ifndef CLEAVE_CLIENT_IO_EXPORT_PLY_H_
+#define CLEAVE_CLIENT_IO_EXPORT_PLY_H_
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "client/io/series/shown_surface.h"
+
+namespace cleave {
+
+// The bytes of a PLY file (1.0, binary little-endian). Vertices: x, y, z in metres as float, and
+// red, green, blue by piece. Faces: vertex_indices, piece and region as int, inside as uchar (1:
+// opened by a crack). `comment` is one line. Errors: those of CheckShownSurface.
+absl::StatusOr<std::string> EncodePly(const ShownSurface& surface, absl::string_view comment);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_EXPORT_PLY_H_

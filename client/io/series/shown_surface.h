@@ -1,0 +1,40 @@
+#ifndef CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_
+#define CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/base/vec3.h"
+
+namespace cleave {
+
+// What there is to see in one frame: the closed surfaces of all pieces, as flat arrays that
+// exporters and pictures read. Pieces share no points.
+struct ShownSurface {
+  int64_t frame = 0;
+  double time = 0;           // s
+  int64_t broken_edges = 0;  // so far
+
+  std::vector<Vec3> points;                       // m
+  std::vector<std::array<int32_t, 3>> triangles;  // point ids, counter-clockwise from outside
+
+  // One a triangle.
+  std::vector<int32_t> pieces;   // piece ids, the same in every frame for as long as a piece lives
+  std::vector<uint8_t> inside;   // 1: opened by a crack; 0: the body's own surface
+  std::vector<int32_t> regions;  // region of the element behind the triangle
+
+  // One a point, or empty where unknown.
+  std::vector<float> strains;       // largest principal stretch minus 1
+  std::vector<Vec3> displacements;  // m, from rest
+  std::vector<Vec3> velocities;     // m/s
+};
+
+// Whether the arrays fit each other, ids are in range and every number is finite. Errors:
+// InvalidArgument, naming the array and the first bad item.
+absl::Status CheckShownSurface(const ShownSurface& surface);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_

@@ -1,0 +1,65 @@
+#include "client/io/export/ply.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/base/bytes.h"
+
+namespace cleave {
+namespace {
+
+using ::testing::HasSubstr;
+
+ShownSurface TwoTriangles() {
+  ShownSurface surface;
+  surface.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
+  surface.triangles = {{0, 1, 2}, {3, 4, 5}};
+  surface.pieces = {0, 1};
+  surface.inside = {0, 1};
+  surface.regions = {3, 4};
+  return surface;
+}
+
+TEST(Ply, ReadsBackAsWritten) {
+  const auto bytes = EncodePly(TwoTriangles(), "key");
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  const std::string end = "end_header\n";
+  const size_t data = bytes->find(end) + end.size();
+  EXPECT_THAT(bytes->substr(0, data), HasSubstr("element vertex 6\n"));
+  EXPECT_THAT(bytes->substr(0, data), HasSubstr("element face 2\n"));
+  ByteReader reader(absl::string_view(*bytes).substr(data));
+  std::vector<std::array<uint8_t, 3>> colors;
+  for (const Vec3& point : TwoTriangles().points) {
+    for (const double coordinate : point) {
+      EXPECT_EQ(reader.Get<float>(), static_cast<float>(coordinate));
+    }
+    colors.push_back({reader.Get<uint8_t>(), reader.Get<uint8_t>(), reader.Get<uint8_t>()});
+  }
+  EXPECT_EQ(colors[0], colors[2]);
+  EXPECT_NE(colors[0], colors[3]);
+  for (const int32_t face : {0, 1}) {
+    EXPECT_EQ(reader.Get<uint8_t>(), 3);
+    for (const int32_t corner : {0, 1, 2}) EXPECT_EQ(reader.Get<int32_t>(), 3 * face + corner);
+    EXPECT_EQ(reader.Get<int32_t>(), face);
+    EXPECT_EQ(reader.Get<int32_t>(), 3 + face);
+    EXPECT_EQ(reader.Get<uint8_t>(), face);
+  }
+  EXPECT_TRUE(reader.Finish("faces").ok());
+}
+
+TEST(Ply, BadSurfacesAreRefusedByName) {
+  ShownSurface surface = TwoTriangles();
+  surface.points[4][1] = std::numeric_limits<double>::quiet_NaN();
+  surface.triangles[1][2] = 6;
+  surface.regions.pop_back();
+  const absl::Status status = EncodePly(surface, "key").status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("points[4]"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("triangles[1]"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("regions"));
+}
+
+}  // namespace
+}  // namespace cleave
