@@ -67,6 +67,7 @@ class Simulation {
   virtual double time() const = 0;                               // s
   virtual const std::vector<Vec3>& positions() const = 0;        // m; unreferenced nodes rest
   virtual const std::vector<int32_t>& broken_edges() const = 0;  // ascending
+  virtual int64_t fragments() const = 0;  // node components through unbroken edges
 
   // Everything that decides the frames to come. Restore refuses (DataLoss, FailedPrecondition)
   // bytes that are damaged or of another scene, mesh or format, and then changes nothing.
