@@ -1,0 +1,224 @@
+#include "core/stream/frame_decoder.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/stream/section_coder.h"
+
+namespace cleave {
+
+absl::StatusOr<FrameDecoder> FrameDecoder::Create(absl::string_view header_bytes,
+                                                  std::span<const Vec3> rest_positions,
+                                                  const DecoderLimits& limits) {
+  FrameDecoder decoder;
+  CLEAVE_ASSIGN_OR_RETURN(decoder.header_, ParseStreamHeader(header_bytes));
+  const StreamHeader& header = decoder.header_;
+  if (header.node_count > limits.max_nodes || header.edge_count > limits.max_edges) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("stream of ", header.node_count, " nodes and ", header.edge_count,
+                     " edges is above the limit of ", limits.max_nodes, " and ", limits.max_edges));
+  }
+  if (rest_positions.size() != header.node_count ||
+      RestPositionsSha256(rest_positions) != header.rest_sha256) {
+    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
+  }
+  decoder.header_bytes_ = std::string(header_bytes);
+  decoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
+  decoder.frame_.frame = -1;
+  return decoder;
+}
+
+absl::Status FrameDecoder::CheckBase(const FrameHeader& frame) const {
+  if (frame.broken_edges > header_.edge_count) {
+    return absl::DataLossError(absl::StrCat("frame has ", frame.broken_edges,
+                                            " broken edges; the mesh has ", header_.edge_count));
+  }
+  if (frame.kind == FrameKind::kKey) {
+    if (const absl::Status status = CheckTolerance(frame.tolerance, header_); !status.ok()) {
+      return absl::DataLossError(status.message());
+    }
+    return absl::OkStatus();
+  }
+  if (state_.frame < 0 || frame.epoch != state_.epoch || frame.base_frame != state_.frame) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "frame ", frame.frame, " of epoch ", frame.epoch, " applies to frame ", frame.base_frame,
+        "; the decoder is at frame ", state_.frame, " of epoch ", state_.epoch));
+  }
+  if (frame.tolerance != state_.tolerance) {
+    return absl::FailedPreconditionError(absl::StrCat("frame ", frame.frame, " has a tolerance of ",
+                                                      frame.tolerance, " m; the decoder is at ",
+                                                      state_.tolerance, " m"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameDecoder::DecodeTopology(const FrameParts& parts, StreamState& next,
+                                          size_t& section) const {
+  const bool key = parts.header.kind == FrameKind::kKey;
+  const SectionType expected = key ? SectionType::kTopologyCheckpoint : SectionType::kTopologyDelta;
+  const size_t before = key ? 0 : state_.broken_edges.size();
+  std::vector<int32_t> listed;
+  std::string raw;
+  for (; section < parts.sections.size() && parts.sections[section].type == expected; ++section) {
+    const Section& part = parts.sections[section];
+    if (part.coder != header_.coder_id) {
+      return absl::UnimplementedError(absl::StrCat("section coder ", part.coder, " is not known"));
+    }
+    if (part.first != 0 || part.prediction != Prediction::kNone || part.count == 0 ||
+        part.count > kMaxTopologyEdges || part.raw_bytes < part.count ||
+        part.raw_bytes > 5 * part.count ||
+        before + listed.size() + part.count > parts.header.broken_edges) {
+      return absl::DataLossError("topology section does not fit its frame");
+    }
+    raw.resize(part.raw_bytes);
+    CLEAVE_RETURN_IF_ERROR(DecodeParts(part.coded, 1, raw));
+    const int64_t first = listed.empty() ? 0 : int64_t{listed.back()} + 1;
+    CLEAVE_RETURN_IF_ERROR(
+        FromGaps(raw, part.count, first, static_cast<int64_t>(header_.edge_count), listed));
+  }
+  next.broken_edges.clear();
+  if (key) {
+    next.broken_edges = std::move(listed);
+  } else {
+    std::set_union(state_.broken_edges.begin(), state_.broken_edges.end(), listed.begin(),
+                   listed.end(), std::back_inserter(next.broken_edges));
+  }
+  // An edge that breaks a second time makes the union too small.
+  if (next.broken_edges.size() != parts.header.broken_edges) {
+    return absl::DataLossError(absl::StrCat("frame declares ", parts.header.broken_edges,
+                                            " broken edges and lists ", next.broken_edges.size()));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameDecoder::DecodeChunk(const Section& section, const std::vector<int32_t>& rest,
+                                       std::vector<int32_t>& positions) const {
+  const size_t begin = 3 * size_t{section.first};
+  const size_t size = 3 * size_t{section.count};
+  std::string planes(section.raw_bytes, '\0');
+  CLEAVE_RETURN_IF_ERROR(
+      DecodeParts(section.coded, static_cast<uint32_t>(planes.size() / size), planes));
+  const std::span<int32_t> values(positions.data() + begin, size);
+  FromBytePlanes(planes, values);
+  bool fit = true;
+  const auto add = [&](size_t at, int32_t prediction) {
+    const int64_t value = int64_t{prediction} + values[at];
+    fit &= value >= -kMaxQuantised && value <= kMaxQuantised;
+    values[at] = static_cast<int32_t>(value);
+  };
+  switch (section.prediction) {
+    case Prediction::kRest:
+      for (size_t at = 0; at < size; ++at) add(at, rest[begin + at]);
+      break;
+    case Prediction::kLast:
+      for (size_t at = 0; at < size; ++at) add(at, state_.positions[begin + at]);
+      break;
+    case Prediction::kLinear:
+      for (size_t at = 0; at < size; ++at) {
+        add(at, PredictLinear(state_.positions[begin + at], state_.previous[begin + at]));
+      }
+      break;
+    case Prediction::kNone:
+      fit = false;
+      break;
+  }
+  return fit ? absl::OkStatus() : absl::DataLossError("a decoded coordinate is out of range");
+}
+
+absl::Status FrameDecoder::DecodePositions(const FrameParts& parts, size_t section,
+                                           StreamState& next) const {
+  const bool key = parts.header.kind == FrameKind::kKey;
+  const uint64_t nodes = header_.node_count;
+  const std::span<const Section> chunks = std::span(parts.sections).subspan(section);
+  const uint64_t expected = (nodes + header_.chunk_nodes - 1) / header_.chunk_nodes;
+  if (chunks.size() != expected) {
+    return absl::DataLossError(
+        absl::StrCat("frame has ", chunks.size(), " sections of positions; it needs ", expected));
+  }
+  for (uint64_t index = 0; index < expected; ++index) {
+    const Section& chunk = chunks[index];
+    const uint64_t first = index * header_.chunk_nodes;
+    const uint64_t count = std::min<uint64_t>(header_.chunk_nodes, nodes - first);
+    if (chunk.coder != header_.coder_id) {
+      return absl::UnimplementedError(absl::StrCat("section coder ", chunk.coder, " is not known"));
+    }
+    const bool predicted =
+        key ? chunk.prediction == Prediction::kRest
+            : chunk.prediction == Prediction::kLast ||
+                  (chunk.prediction == Prediction::kLinear && state_.has_previous);
+    if (chunk.type != SectionType::kPositions || chunk.first != first || chunk.count != count ||
+        chunk.raw_bytes % (3 * count) != 0 || chunk.raw_bytes > 12 * count || !predicted) {
+      return absl::DataLossError(
+          absl::StrCat("positions section ", index, " does not fit its frame"));
+    }
+  }
+  next.positions.resize(3 * nodes);
+  std::vector<absl::Status> statuses(expected);
+  ParallelFor(static_cast<int64_t>(expected), 1, [&](int64_t begin, int64_t end) {
+    for (auto index = static_cast<size_t>(begin); index < static_cast<size_t>(end); ++index) {
+      statuses[index] = DecodeChunk(chunks[index], rest_, next.positions);
+    }
+  });
+  for (const absl::Status& status : statuses) CLEAVE_RETURN_IF_ERROR(status);
+  return absl::OkStatus();
+}
+
+absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
+  CLEAVE_ASSIGN_OR_RETURN(const FrameParts parts, SplitFrame(frame_bytes));
+  const FrameHeader& frame = parts.header;
+  CLEAVE_RETURN_IF_ERROR(CheckBase(frame));
+  if (frame.kind == FrameKind::kKey && rest_tolerance_ != frame.tolerance) {
+    rest_ = QuantiseRest(rest_positions_, header_.origin,
+                         QuantisationStep(frame.tolerance, header_.domain_bound));
+    rest_tolerance_ = frame.tolerance;
+  }
+  StreamState& next = scratch_;
+  next.frame = frame.frame;
+  next.epoch = frame.epoch;
+  next.time = frame.time;
+  next.tolerance = frame.tolerance;
+  next.fragments = frame.fragments;
+  size_t section = 0;
+  CLEAVE_RETURN_IF_ERROR(DecodeTopology(parts, next, section));
+  if (frame.kind == FrameKind::kHold) {
+    if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
+    next.positions = state_.positions;
+  } else {
+    CLEAVE_RETURN_IF_ERROR(DecodePositions(parts, section, next));
+  }
+  if (HashStreamState(header_bytes_, next) != frame.state_hash) {
+    return absl::DataLossError(absl::StrCat("frame ", frame.frame, " fails its state hash"));
+  }
+  Accept(next, frame);
+  return absl::OkStatus();
+}
+
+void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
+  next.has_previous = frame.kind != FrameKind::kKey;
+  std::swap(state_, next);
+  // The state before is now `next`; its positions become the history.
+  state_.previous.swap(next.positions);
+  state_hash_ = frame.state_hash;
+
+  frame_.frame = state_.frame;
+  frame_.time = state_.time;
+  frame_.fragments = state_.fragments;
+  frame_.broken_edges = state_.broken_edges;
+  frame_.positions.resize(header_.node_count);
+  const double step = QuantisationStep(state_.tolerance, header_.domain_bound);
+  const Vec3 origin = header_.origin;
+  ParallelFor(static_cast<int64_t>(header_.node_count), 4096, [&](int64_t begin, int64_t end) {
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        frame_.positions[node][axis] =
+            origin[axis] + static_cast<double>(state_.positions[3 * node + axis]) * step;
+      }
+    }
+  });
+}
+
+}  // namespace cleave

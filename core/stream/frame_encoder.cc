@@ -1,0 +1,272 @@
+#include "core/stream/frame_encoder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/stream/section_coder.h"
+
+namespace cleave {
+namespace {
+
+constexpr int64_t kGrainNodes = 4096;
+
+// Bits that a residual takes, roughly: what the choice of a prediction compares.
+int ResidualBits(int64_t residual) {
+  return std::bit_width(static_cast<uint64_t>(residual < 0 ? -residual : residual));
+}
+
+}  // namespace
+
+absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
+                                                  std::span<const Vec3> rest_positions,
+                                                  std::optional<StreamState> state) {
+  FrameEncoder encoder;
+  encoder.header_bytes_ = SerializeStreamHeader(header);
+  CLEAVE_ASSIGN_OR_RETURN(encoder.header_, ParseStreamHeader(encoder.header_bytes_));
+  if (rest_positions.size() != header.node_count ||
+      RestPositionsSha256(rest_positions) != header.rest_sha256) {
+    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
+  }
+  encoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
+  encoder.tolerance_ = header.tolerance;
+  encoder.next_.resize(rest_positions.size() * 3);
+  if (state.has_value() && state->frame >= 0) {
+    if (state->positions.size() != encoder.next_.size() ||
+        (state->has_previous && state->previous.size() != encoder.next_.size())) {
+      return absl::FailedPreconditionError("the state to go on from is of another mesh");
+    }
+    CLEAVE_RETURN_IF_ERROR(CheckTolerance(state->tolerance, header));
+    encoder.tolerance_ = state->tolerance;
+    encoder.epoch_ = state->epoch;
+    encoder.state_ = *std::move(state);
+  }
+  encoder.rest_ = QuantiseRest(encoder.rest_positions_, header.origin,
+                               QuantisationStep(encoder.tolerance_, header.domain_bound));
+  return encoder;
+}
+
+absl::Status FrameEncoder::StartEpoch(uint32_t epoch) {
+  if (epoch <= epoch_) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("epoch ", epoch, " does not rise; the stream is in epoch ", epoch_));
+  }
+  epoch_ = epoch;
+  return absl::OkStatus();
+}
+
+absl::Status FrameEncoder::SetTolerance(double tolerance) {
+  CLEAVE_RETURN_IF_ERROR(CheckTolerance(tolerance, header_));
+  tolerance_ = tolerance;
+  rest_ = QuantiseRest(rest_positions_, header_.origin,
+                       QuantisationStep(tolerance_, header_.domain_bound));
+  return absl::OkStatus();
+}
+
+absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
+  const bool goes_on = state_.frame >= 0 && epoch_ == state_.epoch;
+  if (frame.frame < 0 || (goes_on && frame.frame <= state_.frame)) {
+    return absl::InvalidArgumentError(absl::StrCat("frame ", frame.frame, " does not follow frame ",
+                                                   goes_on ? state_.frame : -1));
+  }
+  if (!std::isfinite(frame.time)) {
+    return absl::InvalidArgumentError(absl::StrCat("time of ", frame.time, " s is not finite"));
+  }
+  if (frame.fragments < 0) {
+    return absl::InvalidArgumentError(absl::StrCat("fragments is ", frame.fragments));
+  }
+  if (frame.positions.size() != header_.node_count) {
+    return absl::InvalidArgumentError(absl::StrCat("frame has ", frame.positions.size(),
+                                                   " positions; the mesh has ", header_.node_count,
+                                                   " nodes"));
+  }
+  const std::vector<int32_t>& edges = frame.broken_edges;
+  for (size_t at = 0; at < edges.size(); ++at) {
+    if (edges[at] < 0 || static_cast<uint64_t>(edges[at]) >= header_.edge_count ||
+        (at > 0 && edges[at] <= edges[at - 1])) {
+      return absl::InvalidArgumentError(absl::StrCat("broken_edges[", at, "] is ", edges[at],
+                                                     "; edges must ascend within [0, ",
+                                                     header_.edge_count, ")"));
+    }
+  }
+  if (goes_on && !std::includes(edges.begin(), edges.end(), state_.broken_edges.begin(),
+                                state_.broken_edges.end())) {
+    return absl::InvalidArgumentError(
+        "an edge that was broken is no longer; that needs a new epoch");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameEncoder::Quantise(const std::vector<Vec3>& positions) {
+  const double inverse_step = 1.0 / QuantisationStep(tolerance_, header_.domain_bound);
+  const Vec3 origin = header_.origin;
+  constexpr double kLimit = kMaxQuantised;
+  std::atomic<bool> all_fit{true};
+  const auto grid = [&](const Vec3& position, size_t axis) {
+    return std::floor((position[axis] - origin[axis]) * inverse_step + 0.5);
+  };
+  const auto fits = [&](double value) { return value >= -kLimit && value <= kLimit; };
+  ParallelFor(static_cast<int64_t>(positions.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
+    bool fit = true;
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const double value = grid(positions[node], axis);
+        fit &= fits(value);
+        next_[3 * node + axis] = static_cast<int32_t>(fits(value) ? value : 0);
+      }
+    }
+    if (!fit) all_fit.store(false, std::memory_order_relaxed);
+  });
+  if (all_fit.load()) return absl::OkStatus();
+  for (size_t node = 0; node < positions.size(); ++node) {
+    const Vec3& x = positions[node];
+    if (fits(grid(x, 0)) && fits(grid(x, 1)) && fits(grid(x, 2))) continue;
+    const double reach = kLimit / inverse_step;
+    return absl::OutOfRangeError(absl::StrCat(
+        "POSITION_OUT_OF_RANGE: node ", node, " at (", x[0], ", ", x[1], ", ", x[2],
+        ") m is not finite or farther than ", reach, " m from (", origin[0], ", ", origin[1], ", ",
+        origin[2], "), which is what a tolerance of ", tolerance_, " m can reach"));
+  }
+  return absl::InternalError("positions changed while they were encoded");
+}
+
+void FrameEncoder::AppendTopology(SectionType type, std::span<const int32_t> edges,
+                                  FrameHeader& header, std::string& body) const {
+  for (size_t begin = 0; begin < edges.size(); begin += kMaxTopologyEdges) {
+    const auto piece =
+        edges.subspan(begin, std::min<size_t>(kMaxTopologyEdges, edges.size() - begin));
+    const std::string raw = ToGaps(piece);
+    const std::string coded = CodeParts(raw, 1);
+    AppendSection({.type = type,
+                   .coder = static_cast<uint8_t>(header_.coder_id),
+                   .raw_bytes = static_cast<uint32_t>(raw.size()),
+                   .count = static_cast<uint32_t>(piece.size()),
+                   .coded = coded},
+                  body);
+    ++header.section_count;
+  }
+}
+
+void FrameEncoder::AppendPositions(bool key, FrameHeader& header, std::string& body) const {
+  const auto nodes = static_cast<int64_t>(header_.node_count);
+  const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
+  const int64_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
+  struct Chunk {
+    Prediction prediction = Prediction::kRest;
+    uint32_t raw_bytes = 0;
+    std::string coded;
+  };
+  std::vector<Chunk> coded(static_cast<size_t>(chunks));
+  const auto encode_chunk = [&](int64_t index, std::vector<int32_t>& residuals) {
+    const auto begin = static_cast<size_t>(3 * index * chunk_nodes);
+    const auto end = static_cast<size_t>(3 * std::min(nodes, (index + 1) * chunk_nodes));
+    Chunk& chunk = coded[static_cast<size_t>(index)];
+    residuals.resize(end - begin);
+    if (key) {
+      for (size_t at = begin; at < end; ++at) residuals[at - begin] = next_[at] - rest_[at];
+    } else {
+      chunk.prediction = Prediction::kLast;
+      if (state_.has_previous) {
+        int64_t last_bits = 0;
+        int64_t linear_bits = 0;
+        for (size_t at = begin; at < end; ++at) {
+          const int64_t last = state_.positions[at];
+          last_bits += ResidualBits(next_[at] - last);
+          linear_bits += ResidualBits(
+              next_[at] - int64_t{PredictLinear(state_.positions[at], state_.previous[at])});
+        }
+        if (linear_bits < last_bits) chunk.prediction = Prediction::kLinear;
+      }
+      if (chunk.prediction == Prediction::kLinear) {
+        for (size_t at = begin; at < end; ++at) {
+          residuals[at - begin] =
+              next_[at] - PredictLinear(state_.positions[at], state_.previous[at]);
+        }
+      } else {
+        for (size_t at = begin; at < end; ++at) {
+          residuals[at - begin] = next_[at] - state_.positions[at];
+        }
+      }
+    }
+    const std::string planes = ToBytePlanes(residuals);
+    chunk.raw_bytes = static_cast<uint32_t>(planes.size());
+    chunk.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / residuals.size()));
+  };
+  ParallelFor(chunks, 1, [&](int64_t begin, int64_t end) {
+    std::vector<int32_t> residuals;
+    for (int64_t index = begin; index < end; ++index) encode_chunk(index, residuals);
+  });
+  for (int64_t index = 0; index < chunks; ++index) {
+    const Chunk& chunk = coded[static_cast<size_t>(index)];
+    const int64_t first = index * chunk_nodes;
+    AppendSection({.type = SectionType::kPositions,
+                   .coder = static_cast<uint8_t>(header_.coder_id),
+                   .prediction = chunk.prediction,
+                   .raw_bytes = chunk.raw_bytes,
+                   .first = static_cast<uint32_t>(first),
+                   .count = static_cast<uint32_t>(std::min(chunk_nodes, nodes - first)),
+                   .coded = chunk.coded},
+                  body);
+    ++header.section_count;
+  }
+}
+
+absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
+  CLEAVE_RETURN_IF_ERROR(CheckFrame(frame));
+  CLEAVE_RETURN_IF_ERROR(Quantise(frame.positions));
+
+  const bool key = state_.frame < 0 || epoch_ != state_.epoch || tolerance_ != state_.tolerance ||
+                   frame.frame % header_.keyframe_interval == 0;
+  const bool breaks = frame.broken_edges.size() != state_.broken_edges.size();
+  EncodedFrame encoded;
+  FrameHeader& header = encoded.header;
+  header.frame = frame.frame;
+  header.base_frame = key ? frame.frame : state_.frame;
+  header.time = frame.time;
+  header.tolerance = tolerance_;
+  header.fragments = frame.fragments;
+  header.broken_edges = frame.broken_edges.size();
+  header.epoch = epoch_;
+  std::string body;
+  if (key) {
+    header.kind = FrameKind::kKey;
+    AppendTopology(SectionType::kTopologyCheckpoint, frame.broken_edges, header, body);
+    AppendPositions(true, header, body);
+  } else if (!breaks && next_ == state_.positions) {
+    header.kind = FrameKind::kHold;
+  } else {
+    header.kind = FrameKind::kDelta;
+    std::vector<int32_t> newly_broken;
+    std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(),
+                        state_.broken_edges.begin(), state_.broken_edges.end(),
+                        std::back_inserter(newly_broken));
+    AppendTopology(SectionType::kTopologyDelta, newly_broken, header, body);
+    AppendPositions(false, header, body);
+  }
+
+  state_.frame = frame.frame;
+  state_.epoch = epoch_;
+  state_.time = frame.time;
+  state_.tolerance = tolerance_;
+  state_.fragments = frame.fragments;
+  state_.broken_edges = frame.broken_edges;
+  state_.previous.swap(state_.positions);
+  state_.positions.swap(next_);
+  state_.has_previous = !key;
+  next_.resize(state_.positions.size());
+
+  header.state_hash = HashStreamState(header_bytes_, state_);
+  header.frame_bytes = kFrameHeaderBytes + body.size();
+  encoded.bytes.reserve(header.frame_bytes);
+  AppendFrameHeader(header, encoded.bytes);
+  encoded.bytes += body;
+  return encoded;
+}
+
+}  // namespace cleave

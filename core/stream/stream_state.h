@@ -1,0 +1,49 @@
+#ifndef CLEAVE_CORE_STREAM_STREAM_STATE_H_
+#define CLEAVE_CORE_STREAM_STREAM_STATE_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/strings/string_view.h"
+#include "core/stream/stream_header.h"
+
+namespace cleave {
+
+// What encoder and decoder both hold after a frame, bit for bit: all that the next frame's bytes
+// depend on besides the next frame itself.
+struct StreamState {
+  int64_t frame = -1;  // -1: none yet
+  uint32_t epoch = 0;
+  double time = 0;       // s
+  double tolerance = 0;  // m, of the grid that the integers are on
+  int64_t fragments = 0;
+  // Quantised coordinates, x, y, z of each node; FORMAT.md, "Quantisation".
+  std::vector<int32_t> positions;
+  // The same a frame before; only valid when has_previous: not after a key frame.
+  std::vector<int32_t> previous;
+  bool has_previous = false;
+  std::vector<int32_t> broken_edges;  // ascending
+};
+
+// Coordinates stay within this, so that a linear continuation and its residual fit.
+inline constexpr int32_t kMaxQuantised = (1 << 30) - 1;
+
+// XXH3-64 of the stream header's bytes and the state; FORMAT.md, "State hash".
+uint64_t HashStreamState(absl::string_view header_bytes, const StreamState& state);
+
+// Rest positions on the grid of this step (m): floor((x - origin) / step + 0.5).
+std::vector<int32_t> QuantiseRest(std::span<const Vec3> rest_positions, const Vec3& origin,
+                                  double step);
+
+// Where a linear continuation puts a coordinate.
+inline int32_t PredictLinear(int32_t last, int32_t before) {
+  const int64_t next = 2 * int64_t{last} - before;
+  return static_cast<int32_t>(next > kMaxQuantised    ? kMaxQuantised
+                              : next < -kMaxQuantised ? -kMaxQuantised
+                                                      : next);
+}
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_STREAM_STATE_H_
