@@ -64,7 +64,7 @@ class EdgeFracture {
  public:
   // `mesh`, `incidence` and what `thresholds` points to must outlive this object. Rest volumes are
   // positive. Thresholds are in Pa, a record an edge or one for all; infinite never breaks, 0 is
-  // cut here and now; never negative or NaN. simultaneity is in (0, 1].
+  // cut here and now; never negative, NaN, or changed later. simultaneity is in (0, 1].
   EdgeFracture(const TetMesh& mesh, const Incidence& incidence, Broadcast<double> thresholds,
                const FractureSettings& settings);
 
