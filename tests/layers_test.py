@@ -21,7 +21,7 @@ TOP_LEVEL = {
 # reading this table is reading the architecture.
 POSIX = "<posix>"
 ARROWS = {
-    "core/base": ["tbb", "xxhash.h", "openssl", "nmmintrin.h"],
+    "core/base": ["tbb", "xxhash.h", "openssl", "nmmintrin.h", "immintrin.h"],
     "core/mesh": ["core/mesh", "Eigen"],
     "core/scene": ["core/scene", "core/mesh"],
     "core/material": ["core/material", "core/scene", "core/mesh", "Eigen"],
@@ -34,16 +34,12 @@ ARROWS = {
     "core/surface": ["core/surface", "core/damage", "core/mesh", "Eigen"],
     "core/stream": ["core/stream", "core/mesh", "zstd.h", "immintrin.h"],
     "proto/convert": ["proto/convert", "cleave", "google", "core/scene", "core/mesh", "core/stream"],
-    "server/files": ["server/files", POSIX],
-    "server/control": ["server/control", "server/files", "google", POSIX],
-    "server/session": ["server/session", "server/files", "proto/convert", "cleave", "google", "core/scene",
+    "server/session": ["server/session", "proto/convert", "cleave", "google", "core/scene",
                        "core/mesh", "core/stream", "core/simulation", POSIX],
-    "server/worker": ["server/worker", "server/session", "server/control", "server/files",
-                      "proto/convert", "cleave", "google",
+    "server/worker": ["server/worker", "server/session", "proto/convert", "cleave", "google",
                       "core/simulation", "core/stream", "core/scene", "core/mesh", "core/surface",
                       "spdlog", "tbb", POSIX],
-    "server/gateway": ["server/gateway", "server/session", "server/control", "server/files",
-                       "proto/convert", "cleave", "google",
+    "server/gateway": ["server/gateway", "server/session", "proto/convert", "cleave", "google",
                        "core/scene", "core/mesh", "core/stream", "core/model/footprint.h", "spdlog",
                        "zstd.h", POSIX],
     "server/gateway/rpc": ["server/gateway", "server/session", "proto/convert", "cleave", "google",

@@ -1,0 +1,59 @@
+#ifndef CLEAVE_CORE_BASE_DOUBLE4_H_
+#define CLEAVE_CORE_BASE_DOUBLE4_H_
+
+#include <cstdint>
+#include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+namespace cleave {
+
+// Four doubles that one instruction works on: the same quantity of four tets, or the three
+// coordinates of a node and a lane that holds 0. The arithmetic operators and [] are the
+// compiler's. A comparison gives an Int64x4 of all ones or zeros, which `mask ? a : b` takes.
+typedef double Double4 __attribute__((vector_size(32)));
+typedef int64_t Int64x4 __attribute__((vector_size(32)));
+typedef float Float4 __attribute__((vector_size(16)));
+inline constexpr int kLanes = 4;
+
+inline Double4 Splat(double value) { return Double4{value, value, value, value}; }
+
+inline Double4 Sqrt(Double4 v) {
+#ifdef __AVX__
+  return reinterpret_cast<Double4>(_mm256_sqrt_pd(reinterpret_cast<__m256d>(v)));
+#else
+  return Double4{__builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]),
+                 __builtin_sqrt(v[3])};
+#endif
+}
+
+inline Double4 Max(Double4 a, Double4 b) { return a > b ? a : b; }
+inline Double4 Abs(Double4 v) { return v < 0 ? -v : v; }
+inline double Sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+inline double Dot(Double4 a, Double4 b) { return Sum(a * b); }
+inline bool Any(Int64x4 mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+
+// Four floats from anywhere in memory, widened.
+inline Double4 LoadFloats(const float* source) {
+  Float4 narrow;
+  std::memcpy(&narrow, source, sizeof(narrow));
+  return __builtin_convertvector(narrow, Double4);
+}
+
+// The square of sixteen numbers whose rows are given, turned about its diagonal: what was lane k of
+// row l becomes lane l of row k.
+inline void Transpose(Double4& a, Double4& b, Double4& c, Double4& d) {
+  const Double4 ac_low = __builtin_shuffle(a, c, Int64x4{0, 4, 1, 5});
+  const Double4 ac_high = __builtin_shuffle(a, c, Int64x4{2, 6, 3, 7});
+  const Double4 bd_low = __builtin_shuffle(b, d, Int64x4{0, 4, 1, 5});
+  const Double4 bd_high = __builtin_shuffle(b, d, Int64x4{2, 6, 3, 7});
+  a = __builtin_shuffle(ac_low, bd_low, Int64x4{0, 4, 1, 5});
+  b = __builtin_shuffle(ac_low, bd_low, Int64x4{2, 6, 3, 7});
+  c = __builtin_shuffle(ac_high, bd_high, Int64x4{0, 4, 1, 5});
+  d = __builtin_shuffle(ac_high, bd_high, Int64x4{2, 6, 3, 7});
+}
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_BASE_DOUBLE4_H_

@@ -1,0 +1,86 @@
+#ifndef CLEAVE_CORE_MATERIAL_STABLE_NEO_HOOKEAN_H_
+#define CLEAVE_CORE_MATERIAL_STABLE_NEO_HOOKEAN_H_
+
+#include "core/base/matrix3.h"
+#include "core/material/isotropic_stiffness.h"
+#include "core/material/moduli.h"
+
+namespace cleave {
+
+// The stable Neo-Hookean solid: a polynomial in F, smooth through flat and inverted states.
+// With L = lambda + mu:
+//
+//   psi = mu/2 (|F|^2 - 3) - mu (J - 1) + L/2 (J - 1)^2,   P = mu F + (L (J - 1) - mu) cof F
+//
+// All is written in G = F - I, so that small strains keep their digits where the printed form
+// would subtract large numbers. T is double or Double4. Source: Smith, de Goes and Kim, Stable
+// Neo-Hookean Flesh Simulation (2018), in the form of the method note, section 5.
+struct StableNeoHookean {
+  // J - 1 and cof G; shared by energy and stress.
+  template <typename T>
+  struct Volume {
+    Matrix3<T> cofactor;  // of G
+    T trace;              // of G
+    T change;             // J - 1
+    T determinant;        // of G
+  };
+  template <typename T>
+  static Volume<T> VolumeOf(const Matrix3<T>& g) {
+    Volume<T> volume;
+    volume.cofactor = Cofactor(g);
+    volume.trace = Trace(g);
+    volume.determinant = g(0, 0) * volume.cofactor(0, 0) + g(0, 1) * volume.cofactor(0, 1) +
+                         g(0, 2) * volume.cofactor(0, 2);
+    volume.change = volume.trace + Trace(volume.cofactor) + volume.determinant;
+    return volume;
+  }
+
+  // J/m^3.
+  template <typename T>
+  static T Energy(const Matrix3<T>& g, const Volume<T>& volume, const LameConstants<T>& lame) {
+    T squares = g(0, 0) * g(0, 0);
+    for (int k = 1; k < 9; ++k) squares += g(k / 3, k % 3) * g(k / 3, k % 3);
+    return 0.5 * (lame.mu * (squares - 2.0 * (Trace(volume.cofactor) + volume.determinant)) +
+                  (lame.lambda + lame.mu) * volume.change * volume.change);
+  }
+
+  // First Piola-Kirchhoff stress, Pa.
+  template <typename T>
+  static Matrix3<T> Stress(const Matrix3<T>& g, const Volume<T>& volume,
+                           const LameConstants<T>& lame) {
+    const T pressure = (lame.lambda + lame.mu) * volume.change;
+    Matrix3<T> stress;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        T shear = g(i, j) + g(j, i) - volume.cofactor(i, j);
+        T cofactor_of_f = volume.cofactor(i, j) - g(j, i);
+        if (i == j) {
+          shear -= volume.trace;
+          cofactor_of_f += 1.0 + volume.trace;
+        }
+        stress(i, j) = lame.mu * shear + pressure * cofactor_of_f;
+      }
+    }
+    return stress;
+  }
+
+  // Second derivative for singular values s, not projected.
+  static StiffnessSpectrum Spectrum(const Double4 s[3], const LameConstants<Double4>& lame) {
+    StiffnessSpectrum spectrum;
+    const Double4 bulk = lame.lambda + lame.mu;
+    const Double4 c = bulk * (s[0] * s[1] * s[2] - 1.0) - lame.mu;
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const Double4 area = s[i] * s[j];
+      spectrum.axial[k][k] = lame.mu + bulk * area * area;
+      spectrum.axial[i][j] = spectrum.axial[j][i] = bulk * area * s[k] * s[k] + c * s[k];
+      spectrum.symmetric[k] = lame.mu - c * s[k];
+      spectrum.skew[k] = lame.mu + c * s[k];
+    }
+    return spectrum;
+  }
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_MATERIAL_STABLE_NEO_HOOKEAN_H_

@@ -1,0 +1,122 @@
+#include "core/model/build_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "core/material/moduli.h"
+#include "core/mesh/tet_geometry.h"
+#include "core/model/elastic_term.h"
+#include "core/scene/selection.h"
+
+namespace cleave {
+namespace {
+
+// The solver's ids of a named node set, ascending; all nodes for the empty name.
+std::vector<int32_t> NodesOf(const std::string& name, const Scene& scene, const TetMesh& mesh,
+                             const MeshOrder& order) {
+  std::vector<int32_t> nodes;
+  for (const NodeSet& set : scene.node_sets) {
+    if (!name.empty() && set.name == name) nodes = SelectNodes(set, mesh, RegionIndex(mesh));
+  }
+  if (name.empty()) {
+    nodes.resize(static_cast<size_t>(mesh.node_count()));
+    for (size_t node = 0; node < nodes.size(); ++node) nodes[node] = static_cast<int32_t>(node);
+  }
+  for (int32_t& node : nodes) node = order.new_node[static_cast<size_t>(node)];
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
+  double sum = 0;
+  for (const auto& [a, b] : incidence.edges) {
+    const Double4 edge = ToDouble4(mesh.rest_positions[static_cast<size_t>(b)]) -
+                         ToDouble4(mesh.rest_positions[static_cast<size_t>(a)]);
+    sum += std::sqrt(Dot(edge, edge));
+  }
+  return sum / static_cast<double>(incidence.edges.size());
+}
+
+}  // namespace
+
+absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
+  if (mesh.tets.empty()) return absl::InvalidArgumentError("mesh: it has no tets");
+  Model model;
+
+  // The mesh in the solver's order.
+  model.order = LocalityOrder(mesh);
+  model.mesh = std::make_unique<const TetMesh>(Reordered(mesh, model.order));
+  model.incidence = std::make_unique<const Incidence>(BuildIncidence(*model.mesh));
+  model.mean_edge_length = MeanEdgeLength(*model.mesh, *model.incidence);
+
+  // Lumped mass: a quarter of each tet to each of its nodes.
+  const std::vector<int32_t> material_of =
+      AssignMaterials(scene.materials, *model.mesh, RegionIndex(*model.mesh));
+  model.masses.assign(static_cast<size_t>(mesh.node_count()), 0);
+  for (size_t tet = 0; tet < material_of.size(); ++tet) {
+    if (material_of[tet] < 0)
+      return absl::InvalidArgumentError(
+          absl::StrCat("materials: none covers tet ", model.order.old_tet[tet]));
+    const double volume = SignedVolume(CornersOf(*model.mesh, static_cast<int64_t>(tet)));
+    const double density = scene.materials[static_cast<size_t>(material_of[tet])].density;
+    for (const int32_t node : model.mesh->tets[tet])
+      model.masses[static_cast<size_t>(node)] += density * volume / 4;
+  }
+
+  // Elasticity: one record where there is one material.
+  std::vector<LameConstants<double>> lame;
+  for (const Material& material : scene.materials)
+    lame.push_back(ToLame(material.youngs_modulus, material.poisson_ratio));
+  if (lame.size() > 1) {
+    std::vector<LameConstants<double>> of_tet(material_of.size());
+    for (size_t tet = 0; tet < of_tet.size(); ++tet)
+      of_tet[tet] = lame[static_cast<size_t>(material_of[tet])];
+    lame = std::move(of_tet);
+  }
+  model.tet_terms.push_back(
+      MakeStableNeoHookeanTerm(*model.mesh, *model.incidence, std::move(lame)));
+
+  model.quality = scene.quality;
+
+  // Gravity.
+  model.gravity = scene.gravity;
+
+  // Prescribed motions.
+  for (const Motion& motion : scene.motions) {
+    PrescribedMotion part;
+    part.nodes = NodesOf(motion.node_set, scene, mesh, model.order);
+    std::erase_if(part.nodes, [&](int32_t n) { return model.masses[static_cast<size_t>(n)] == 0; });
+    for (size_t i = 0; i < 3; ++i) part.axes[i] = motion.axes[i] ? -1 : 0;
+    part.keyframes = motion.keyframes;
+    part.center = ToDouble4(motion.rotation_center);
+    part.axis = ToDouble4(motion.rotation_axis);
+    part.axis /= std::sqrt(Dot(part.axis, part.axis));
+    model.motions.push_back(std::move(part));
+  }
+
+  return model;
+}
+
+State InitialState(const Scene& scene, const TetMesh& mesh, const Model& model) {
+  State state;
+  state.displacements.assign(static_cast<size_t>(mesh.node_count()), Splat(0));
+  state.velocities = state.displacements;
+  for (const InitialVelocity& initial : scene.initial_velocities) {
+    const Vec3& spin = initial.angular_velocity;
+    for (const int32_t node : NodesOf(initial.node_set, scene, mesh, model.order)) {
+      const auto n = static_cast<size_t>(node);
+      if (model.masses[n] == 0) continue;
+      const Double4 arm = ToDouble4(model.mesh->rest_positions[n]) - ToDouble4(initial.center);
+      const Double4 turning = {spin[1] * arm[2] - spin[2] * arm[1],
+                               spin[2] * arm[0] - spin[0] * arm[2],
+                               spin[0] * arm[1] - spin[1] * arm[0], 0};
+      state.velocities[n] += ToDouble4(initial.velocity) + turning;
+    }
+  }
+  return state;
+}
+
+}  // namespace cleave

@@ -1,0 +1,199 @@
+#include "core/model/elastic_term.h"
+
+#include <utility>
+
+#include "core/material/isotropic_stiffness.h"
+#include "core/material/stable_neo_hookean.h"
+#include "core/model/tet_batches.h"
+
+namespace cleave {
+namespace {
+
+// Element matrices of a batch: the blocks of its six edges, each entry of four tets.
+struct BatchBlocks {
+  Double4 block[6][9];  // [kTetEdges][column by column]
+};
+
+// Source: method note, section 5; in the frame of the singular values the second derivative is
+// sparse, so the blocks are built there from turned gradients and turned back.
+void ElementBlocks(const TetBatch& batch, const SignedSvd& svd, const StiffnessSpectrum& spectrum,
+                   BatchBlocks& out) {
+  Double4 gradient[4][3];  // of every vertex, in the frame of V
+  for (int i = 0; i < 3; ++i) {
+    for (int vertex = 1; vertex < 4; ++vertex) {
+      const Double4* g = batch.gradient[vertex - 1];
+      gradient[vertex][i] = g[0] * svd.v(0, i) + g[1] * svd.v(1, i) + g[2] * svd.v(2, i);
+    }
+    gradient[0][i] = -(gradient[1][i] + gradient[2][i] + gradient[3][i]);
+  }
+  // Of a pair of off-diagonal entries: how each follows itself and how it follows the other.
+  // The minus sign of the block is taken in here, with the volume.
+  Double4 itself[3], other[3], axial[3][3];
+  for (int k = 0; k < 3; ++k) {
+    itself[k] = -0.5 * batch.volume * (spectrum.symmetric[k] + spectrum.skew[k]);
+    other[k] = -0.5 * batch.volume * (spectrum.symmetric[k] - spectrum.skew[k]);
+    for (int i = 0; i < 3; ++i) axial[k][i] = -batch.volume * spectrum.axial[k][i];
+  }
+  for (size_t edge = 0; edge < 6; ++edge) {
+    const Double4* a = gradient[kTetEdges[edge][0]];
+    const Double4* b = gradient[kTetEdges[edge][1]];
+    Matrix3<Double4> turned;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      turned(i, i) =
+          axial[i][i] * a[i] * b[i] + itself[k] * (a[j] * b[j]) + itself[j] * (a[k] * b[k]);
+      turned(i, j) = axial[i][j] * (a[i] * b[j]) + other[k] * (a[j] * b[i]);
+      turned(j, i) = axial[j][i] * (a[j] * b[i]) + other[k] * (a[i] * b[j]);
+    }
+    const Matrix3<Double4> half = svd.u * turned;
+    for (int column = 0; column < 3; ++column) {
+      for (int row = 0; row < 3; ++row) {
+        out.block[edge][3 * column + row] = half(row, 0) * svd.u(column, 0) +
+                                            half(row, 1) * svd.u(column, 1) +
+                                            half(row, 2) * svd.u(column, 2);
+      }
+    }
+  }
+}
+
+void AddFloats(Double4 values, float* target) {
+  Float4 sum;
+  std::memcpy(&sum, target, sizeof(sum));
+  sum += __builtin_convertvector(values, Float4);
+  std::memcpy(target, &sum, sizeof(sum));
+}
+
+void ScatterBlocks(const TetBatch& batch, int lanes, BatchBlocks& blocks, float* target) {
+  for (size_t edge = 0; edge < 6; ++edge) {
+    Double4* block = blocks.block[edge];
+    Transpose(block[0], block[1], block[2], block[3]);
+    Transpose(block[4], block[5], block[6], block[7]);
+    for (int lane = 0; lane < lanes; ++lane) {
+      float* at = target + 9 * static_cast<int64_t>(batch.edges[edge][static_cast<size_t>(lane)]);
+      AddFloats(block[lane], at);
+      AddFloats(block[4 + lane], at + 4);
+      at[8] += static_cast<float>(block[8][lane]);
+    }
+  }
+}
+
+template <typename Law>
+class ElasticTerm final : public TetTerm {
+ public:
+  ElasticTerm(const TetMesh& mesh, const Incidence& incidence,
+              std::vector<LameConstants<double>> lame)
+      : mesh_(mesh), tets_(BuildTetBatches(mesh, incidence)) {
+    const bool uniform = lame.size() == 1;
+    lame_stride_ = uniform ? 0 : 1;
+    lame_.resize(uniform ? 1 : tets_.batches.size());
+    for (size_t b = 0; b < lame_.size(); ++b) {
+      for (size_t lane = 0; lane < kLanes; ++lane) {
+        const auto& of_tet = lame[std::min(b * kLanes + lane, lame.size() - 1)];
+        lame_[b].mu[lane] = of_tet.mu;
+        lame_[b].lambda[lane] = of_tet.lambda;
+      }
+    }
+    chunk_energy_.resize((tets_.batches.size() + TetBatches::kChunkBatches - 1) /
+                         TetBatches::kChunkBatches);
+  }
+
+  absl::string_view name() const override { return "elasticity"; }
+
+  int64_t bytes() const override {
+    return static_cast<int64_t>(tets_.batches.size() * sizeof(TetBatch) +
+                                lame_.size() * sizeof(LameConstants<Double4>));
+  }
+
+  double AddForces(const NodalVector& displacements, NodalVector& forces) override {
+    ForEachChunk(tets_, [&](int64_t chunk, int64_t begin, int64_t end) {
+      Double4 energy = Splat(0);
+      for (int64_t b = begin; b < end; ++b) {
+        const TetBatch& batch = tets_.batches[static_cast<size_t>(b)];
+        const Matrix3<Double4> g = DisplacementGradient(batch, displacements.data());
+        const auto volume = Law::VolumeOf(g);
+        energy += batch.volume * Law::Energy(g, volume, lame(b));
+        const Matrix3<Double4> stress = Law::Stress(g, volume, lame(b));
+        Double4 force[4][4];  // [vertex][axis], then [vertex][lane]
+        for (int axis = 0; axis < 3; ++axis) {
+          for (int vertex = 1; vertex < 4; ++vertex) {
+            const Double4* gradient = batch.gradient[vertex - 1];
+            force[vertex][axis] =
+                -batch.volume * (stress(axis, 0) * gradient[0] + stress(axis, 1) * gradient[1] +
+                                 stress(axis, 2) * gradient[2]);
+          }
+          force[0][axis] = -(force[1][axis] + force[2][axis] + force[3][axis]);
+        }
+        const int lanes = tets_.lanes(b);
+        for (size_t vertex = 0; vertex < 4; ++vertex) {
+          Double4* of_vertex = force[vertex];
+          of_vertex[3] = Splat(0);
+          Transpose(of_vertex[0], of_vertex[1], of_vertex[2], of_vertex[3]);
+          for (int lane = 0; lane < lanes; ++lane)
+            forces[static_cast<size_t>(batch.nodes[vertex][static_cast<size_t>(lane)])] +=
+                of_vertex[lane];
+        }
+      }
+      chunk_energy_[static_cast<size_t>(chunk)] = Sum(energy);
+    });
+    double energy = 0;
+    for (const double of_chunk : chunk_energy_) energy += of_chunk;
+    return energy;
+  }
+
+  void AddStiffness(const NodalVector& displacements, EdgeBlocks& blocks) override {
+    ForEachChunk(tets_, [&](int64_t, int64_t begin, int64_t end) {
+      BatchBlocks element;
+      for (int64_t b = begin; b < end; ++b) {
+        const TetBatch& batch = tets_.batches[static_cast<size_t>(b)];
+        Matrix3<Double4> f = DisplacementGradient(batch, displacements.data());
+        for (int i = 0; i < 3; ++i) f(i, i) += 1.0;
+        const SignedSvd svd = ComputeSvd(f);
+        StiffnessSpectrum spectrum = Law::Spectrum(svd.s, lame(b));
+        ProjectToSemidefinite(spectrum);
+        ElementBlocks(batch, svd, spectrum, element);
+        ScatterBlocks(batch, tets_.lanes(b), element, blocks.data());
+      }
+    });
+  }
+
+  void AddEffectiveStress(const NodalVector& displacements,
+                          std::span<Eigen::Matrix3d> stresses) const override {
+    ParallelFor(static_cast<int64_t>(tets_.batches.size()), 512, [&](int64_t begin, int64_t end) {
+      for (int64_t b = begin; b < end; ++b) {
+        const Matrix3<Double4> g =
+            DisplacementGradient(tets_.batches[static_cast<size_t>(b)], displacements.data());
+        const Matrix3<Double4> stress = Law::Stress(g, Law::VolumeOf(g), lame(b));
+        const int lanes = tets_.lanes(b);
+        for (int lane = 0; lane < lanes; ++lane) {
+          Eigen::Matrix3d& target = stresses[static_cast<size_t>(b * kLanes + lane)];
+          for (int k = 0; k < 9; ++k) target(k / 3, k % 3) += stress(k / 3, k % 3)[lane];
+        }
+      }
+    });
+  }
+
+  void SetDamageFactor(int64_t tet, double factor) override {
+    tets_.batches[static_cast<size_t>(tet / kLanes)].volume[tet % kLanes] =
+        factor * RestVolume(mesh_, tet);
+  }
+
+ private:
+  const LameConstants<Double4>& lame(int64_t batch) const {
+    return lame_[static_cast<size_t>(batch * lame_stride_)];
+  }
+
+  const TetMesh& mesh_;
+  TetBatches tets_;
+  std::vector<LameConstants<Double4>> lame_;  // a batch each, or one for all
+  int64_t lame_stride_ = 0;
+  std::vector<double> chunk_energy_;  // J, scratch
+};
+
+}  // namespace
+
+std::unique_ptr<TetTerm> MakeStableNeoHookeanTerm(const TetMesh& mesh, const Incidence& incidence,
+                                                  std::vector<LameConstants<double>> lame) {
+  return std::make_unique<ElasticTerm<StableNeoHookean>>(mesh, incidence, std::move(lame));
+}
+
+}  // namespace cleave

@@ -1,0 +1,46 @@
+#ifndef CLEAVE_CORE_MODEL_MODEL_H_
+#define CLEAVE_CORE_MODEL_MODEL_H_
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/reorder.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/model/nodal_vector.h"
+#include "core/model/prescribed_motion.h"
+#include "core/model/tet_term.h"
+#include "core/scene/scene.h"
+
+namespace cleave {
+
+// What a scene becomes: just the parts that it asks for. Ids in it are the solver's, nodes and tets
+// in an order that is good for memory; `order` leads back. Does not change but for damage factors
+// in the terms.
+struct Model {
+  // On the heap: terms point to it, and a model may move.
+  std::unique_ptr<const TetMesh> mesh;  // m
+  MeshOrder order;                      // old ids are the client's
+  std::unique_ptr<const Incidence> incidence;
+  double mean_edge_length = 0;  // m
+  std::vector<double> masses;   // kg, a node each; 0 for a node of no tet, which rests
+  std::vector<std::unique_ptr<TetTerm>> tet_terms;
+  std::optional<Vec3> gravity;  // m/s^2
+  std::vector<PrescribedMotion> motions;
+  Quality quality;
+
+  int64_t node_count() const { return mesh->node_count(); }
+  int64_t tet_count() const { return mesh->tet_count(); }
+};
+
+// How the body is at an instant.
+struct State {
+  NodalVector displacements;  // m, from rest
+  NodalVector velocities;     // m/s
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_MODEL_MODEL_H_

@@ -1,0 +1,46 @@
+#ifndef CLEAVE_CORE_MODEL_TET_TERM_H_
+#define CLEAVE_CORE_MODEL_TET_TERM_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "absl/strings/string_view.h"
+#include "core/model/nodal_vector.h"
+
+namespace cleave {
+
+// Stiffness between the two nodes of every edge, N/m: block e is the 3x3 matrix B = -d2 Psi /
+// dx_i dx_j of edge e = (i, j), i < j, stored column by column at 9 * e. The blocks at a node
+// follow: energy does not change under translation, so K_ii = sum of the blocks of its edges, and
+// (K x)_i = sum_j B_ij (x_i - x_j). That form is exact for translations even in float, which the
+// sum of a stored float diagonal would not be. One block more than edges, so that the last may be
+// read four floats at a time.
+using EdgeBlocks = std::vector<float>;
+
+inline size_t EdgeBlocksSize(int64_t edge_count) { return 9 * static_cast<size_t>(edge_count + 1); }
+
+// An elastic energy over tets, all of them a batch. Ids are the solver's. Loops run on the caller's
+// TBB arena and give the same bits for any number of threads.
+class TetTerm {
+ public:
+  virtual ~TetTerm() = default;
+  virtual absl::string_view name() const = 0;
+  // Bytes that this term holds.
+  virtual int64_t bytes() const = 0;
+
+  // Adds -dPsi/dx (N) at displacements from rest (m) to `forces`; returns the energy, J.
+  virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
+  // Adds the positive semidefinite part of every tet's second derivative to `blocks`.
+  virtual void AddStiffness(const NodalVector& displacements, EdgeBlocks& blocks) = 0;
+  // Adds the first Piola-Kirchhoff stress, Pa, a tet each, without the damage factor.
+  virtual void AddEffectiveStress(const NodalVector& displacements,
+                                  std::span<Eigen::Matrix3d> stresses) const = 0;
+  // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor.
+  virtual void SetDamageFactor(int64_t tet, double factor) = 0;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_MODEL_TET_TERM_H_

@@ -1,0 +1,110 @@
+#include "core/simulation/scene_digest.h"
+
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "core/base/bytes.h"
+#include "core/base/state_hash.h"
+
+namespace cleave {
+namespace {
+
+void PutText(absl::string_view text, ByteWriter& out) {
+  out.Put<uint64_t>(text.size());
+  out.PutBytes(text);
+}
+
+void PutSelector(const Selector& selector, ByteWriter& out) {
+  out.Put<uint64_t>(selector.index());
+  if (const auto* box = std::get_if<BoxSelector>(&selector)) {
+    out.Put(box->min);
+    out.Put(box->max);
+  } else if (const auto* sphere = std::get_if<SphereSelector>(&selector)) {
+    out.Put(sphere->center);
+    out.Put(sphere->radius);
+  } else if (const auto* plane = std::get_if<PlaneSelector>(&selector)) {
+    out.Put(plane->point);
+    out.Put(plane->normal);
+  } else if (const auto* region = std::get_if<RegionSelector>(&selector)) {
+    PutText(region->region, out);
+  } else if (const auto* list = std::get_if<IdSelector>(&selector)) {
+    out.PutVector(list->ids);
+  }
+}
+
+template <typename T>
+void Update(const std::vector<T>& items, StateHash& hash) {
+  const uint64_t count = items.size();
+  hash.Update(&count, sizeof(count));
+  hash.Update(items.data(), items.size() * sizeof(T));
+}
+
+}  // namespace
+
+uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
+  std::string bytes;
+  ByteWriter out(bytes);
+  out.Put<uint64_t>(mesh.regions.size());
+  for (const MeshRegion& region : mesh.regions) {
+    out.Put(region.id);
+    PutText(region.name, out);
+  }
+  out.Put<uint64_t>(scene.materials.size());
+  for (const Material& material : scene.materials) {
+    out.Put<uint64_t>(material.regions.size());
+    for (const std::string& region : material.regions) PutText(region, out);
+    out.Put(material.youngs_modulus);
+    out.Put(material.poisson_ratio);
+    out.Put(material.density);
+    out.Put<uint8_t>(material.tensile_strength.has_value());
+    out.Put(material.tensile_strength.value_or(0));
+  }
+  out.Put<uint64_t>(scene.node_sets.size());
+  for (const NodeSet& set : scene.node_sets) {
+    PutText(set.name, out);
+    out.Put<uint64_t>(set.select.size());
+    for (const Selector& selector : set.select) PutSelector(selector, out);
+  }
+  out.Put<uint64_t>(scene.motions.size());
+  for (const Motion& motion : scene.motions) {
+    PutText(motion.node_set, out);
+    out.Put(motion.axes);
+    out.Put<uint64_t>(motion.keyframes.size());
+    for (const Keyframe& keyframe : motion.keyframes) {
+      out.Put(keyframe.time);
+      out.Put(keyframe.translation);
+      out.Put(keyframe.rotation);
+    }
+    out.Put(motion.rotation_center);
+    out.Put(motion.rotation_axis);
+  }
+  out.Put<uint64_t>(scene.initial_velocities.size());
+  for (const InitialVelocity& initial : scene.initial_velocities) {
+    PutText(initial.node_set, out);
+    out.Put(initial.velocity);
+    out.Put(initial.angular_velocity);
+    out.Put(initial.center);
+  }
+  out.Put<uint8_t>(scene.gravity.has_value());
+  out.Put(scene.gravity.value_or(Vec3{0, 0, 0}));
+  out.Put(scene.fracture.max_passes);
+  out.Put(scene.fracture.simultaneity);
+  out.Put(scene.timing.frames_per_second);
+  out.Put(scene.timing.steps_per_frame);
+  out.Put(scene.quality.newton_iterations);
+  out.Put(scene.quality.residual_tolerance);
+  out.Put(scene.quality.step_tolerance);
+  out.Put(scene.quality.linear_tolerance);
+  out.Put(scene.quality.max_step_halvings);
+  out.Put(scene.seed);
+
+  StateHash hash;
+  Update(mesh.rest_positions, hash);
+  Update(mesh.tets, hash);
+  Update(mesh.tet_regions, hash);
+  hash.Update(bytes.data(), bytes.size());
+  return hash.Digest();
+}
+
+}  // namespace cleave

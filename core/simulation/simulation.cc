@@ -1,0 +1,171 @@
+#include "core/simulation/simulation.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/bytes.h"
+#include "core/base/crc32c.h"
+#include "core/base/state_hash.h"
+#include "core/base/status.h"
+#include "core/base/stopwatch.h"
+#include "core/damage/components.h"
+#include "core/model/build_model.h"
+#include "core/simulation/scene_digest.h"
+#include "core/solver/stepper.h"
+
+namespace cleave {
+namespace {
+
+constexpr uint64_t kSavedMagic = 0x3145544154535643u;  // "CVSTATE1"
+constexpr uint32_t kSavedVersion = 1;
+
+class BodySimulation final : public Simulation {
+ public:
+  BodySimulation(const Scene& scene, const TetMesh& mesh, Model model, int threads)
+      : timing_(scene.timing),
+        digest_(DigestScene(scene, mesh)),
+        model_(std::move(model)),
+        arena_(std::max(1, threads)),
+        stepper_(model_),
+        state_(InitialState(scene, mesh, model_)),
+        positions_(mesh.rest_positions) {
+    std::vector<int32_t> labels;
+    const std::vector<uint8_t> broken(static_cast<size_t>(model_.incidence->edge_count()), 0);
+    pieces_ = LabelComponents(*model_.incidence, broken, labels);
+    PublishPositions();
+  }
+
+  absl::StatusOr<FrameReport> Advance(const StopFlag& stop) override {
+    const Stopwatch watch;
+    const State before = state_;
+    StepReport steps;
+    const absl::Status status = arena_.execute([&] { return RunFrame(stop, steps); });
+    if (!status.ok()) {
+      state_ = before;
+      return status;
+    }
+    ++frame_;
+    external_work_ += steps.external_work;
+    PublishPositions();
+
+    FrameReport report;
+    report.frame = frame_;
+    report.time = time();
+    report.steps = steps.steps;
+    report.step_halvings = steps.step_halvings;
+    report.newton_iterations = steps.newton_iterations;
+    report.linear_iterations = steps.linear_iterations;
+    report.residual = steps.residual;
+    report.kinetic_energy = KineticEnergy(model_, state_);
+    report.elastic_energy = stepper_.solver().elastic_energy();
+    report.external_work = external_work_;
+    report.fragments = pieces_;
+    report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
+    report.assembly_seconds = steps.assembly_seconds;
+    report.linear_solve_seconds = steps.linear_solve_seconds;
+    report.total_seconds = watch.Seconds();
+    return report;
+  }
+
+  int64_t frame() const override { return frame_; }
+  double time() const override { return TimeOf(frame_, 0); }
+  const std::vector<Vec3>& positions() const override { return positions_; }
+  int64_t fragments() const override { return pieces_; }
+  const std::vector<int32_t>& broken_edges() const override { return broken_edges_; }
+
+  std::string Save() const override {
+    std::string saved;
+    ByteWriter out(saved);
+    out.Put(kSavedMagic);
+    out.Put(kSavedVersion);
+    out.Put(digest_);
+    out.Put(frame_);
+    out.Put(external_work_);
+    out.PutVector(state_.displacements);
+    out.PutVector(state_.velocities);
+    out.Put(Crc32c(saved));
+    return saved;
+  }
+
+  absl::Status Restore(absl::string_view saved) override {
+    if (saved.size() < sizeof(uint32_t)) return absl::DataLossError("the saved state is truncated");
+    const absl::string_view body = saved.substr(0, saved.size() - sizeof(uint32_t));
+    ByteReader checksum(saved.substr(body.size()));
+    if (checksum.Get<uint32_t>() != Crc32c(body))
+      return absl::DataLossError("the saved state does not match its checksum");
+    ByteReader in(body);
+    if (in.Get<uint64_t>() != kSavedMagic)
+      return absl::DataLossError("these bytes are not a saved state");
+    if (const auto version = in.Get<uint32_t>(); version != kSavedVersion)
+      return absl::FailedPreconditionError(absl::StrCat("the saved state has format ", version,
+                                                        ", this build reads ", kSavedVersion));
+    if (in.Get<uint64_t>() != digest_)
+      return absl::FailedPreconditionError("the saved state is of another scene or mesh");
+    const auto frame = in.Get<int64_t>();
+    const auto external_work = in.Get<double>();
+    State state;
+    state.displacements = in.GetVector<Double4>();
+    state.velocities = in.GetVector<Double4>();
+    CLEAVE_RETURN_IF_ERROR(in.Finish("the saved state"));
+    if (frame < 0 || state.displacements.size() != state_.displacements.size() ||
+        state.velocities.size() != state_.velocities.size())
+      return absl::DataLossError("the saved state contradicts itself");
+    frame_ = frame;
+    external_work_ = external_work;
+    state_ = std::move(state);
+    PublishPositions();
+    return absl::OkStatus();
+  }
+
+  uint64_t state_hash() const override { return StateHash::Of(Save()); }
+
+ private:
+  // s; the same number however a run comes to it.
+  double TimeOf(int64_t frame, int32_t step) const {
+    return (static_cast<double>(frame) + static_cast<double>(step) / timing_.steps_per_frame) /
+           timing_.frames_per_second;
+  }
+
+  absl::Status RunFrame(const StopFlag& stop, StepReport& report) {
+    for (int32_t step = 0; step < timing_.steps_per_frame; ++step) {
+      if (stop.requested()) return absl::CancelledError("stopped between steps");
+      CLEAVE_RETURN_IF_ERROR(
+          stepper_.Step(TimeOf(frame_, step), TimeOf(frame_, step + 1), stop, state_, report));
+    }
+    return absl::OkStatus();
+  }
+
+  void PublishPositions() {
+    for (size_t node = 0; node < positions_.size(); ++node) {
+      positions_[static_cast<size_t>(model_.order.old_node[node])] =
+          ToVec3(ToDouble4(model_.mesh->rest_positions[node]) + state_.displacements[node]);
+    }
+  }
+
+  const Timing timing_;
+  const uint64_t digest_;
+  const Model model_;
+  tbb::task_arena arena_;
+  Stepper stepper_;
+  State state_;
+  int64_t frame_ = 0;
+  double external_work_ = 0;  // J
+  int64_t pieces_ = 0;
+  std::vector<Vec3> positions_;
+  std::vector<int32_t> broken_edges_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Simulation>> Simulation::Create(const Scene& scene, TetMesh mesh,
+                                                               const Options& options) {
+  CLEAVE_ASSIGN_OR_RETURN(Model model, BuildModel(scene, mesh));
+  return std::make_unique<BodySimulation>(scene, mesh, std::move(model), options.threads);
+}
+
+}  // namespace cleave

@@ -1,0 +1,33 @@
+#ifndef CLEAVE_CORE_SOLVER_CONSTRAINTS_H_
+#define CLEAVE_CORE_SOLVER_CONSTRAINTS_H_
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/model/model.h"
+#include "core/model/nodal_vector.h"
+
+namespace cleave {
+
+// A node of which some coordinates are not for the solver to find.
+struct FixedNode {
+  int32_t node;
+  Int64x4 axes;  // all ones along given axes, 0 along free ones and in the last lane
+};
+
+// Which coordinates of `model` are given: those of prescribed motions, and all of the nodes without
+// mass, which rest. Ascending nodes, each once.
+std::vector<FixedNode> FindFixedNodes(const Model& model);
+
+// Writes the displacements (m) that the motions prescribe at `time` (s) into their coordinates.
+void ApplyMotions(const Model& model, double time, NodalVector& displacements);
+
+// Adds up, for each motion, the force on the body over its prescribed coordinates. `forces` (N) are
+// what each node needs from outside to move as it does.
+std::vector<Vec3> SumMotionForces(const Model& model, const NodalVector& forces);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SOLVER_CONSTRAINTS_H_

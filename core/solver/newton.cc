@@ -1,0 +1,190 @@
+#include "core/solver/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/status.h"
+#include "core/base/stopwatch.h"
+
+namespace cleave {
+namespace {
+
+constexpr double kArmijo = 1e-4;
+constexpr int kMaxBacktracks = 40;
+// Energies are sums of about as many roundings as there are tets, mostly of random sign.
+constexpr double kEnergyRounding = 1e-14;
+
+}  // namespace
+
+NewtonSolver::NewtonSolver(const Model& model)
+    : model_(model),
+      fixed_nodes_(FindFixedNodes(model)),
+      gravity_(model.gravity ? ToDouble4(*model.gravity) : Splat(0)),
+      blocks_(model.node_count()),
+      matrix_(model.incidence->edges, model.node_count()),
+      pcg_(model.node_count(), fixed_nodes_),
+      inertia_(model.masses.size()),
+      gradient_(model.masses.size()),
+      residual_(model.masses.size()),
+      search_(model.masses.size()),
+      trial_(model.masses.size()) {
+  double squares = 0;
+  for (const double mass : model.masses) squares += mass * mass;
+  gravity_force_ = std::sqrt(squares * Dot(gravity_, gravity_));
+}
+
+void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& displacements) {
+  blocks_.Run([&](int64_t begin, int64_t end) {
+    std::fill(gradient_.begin() + begin, gradient_.begin() + end, Splat(0));
+  });
+  elastic_energy_ = 0;
+  for (const auto& term : model_.tet_terms)
+    elastic_energy_ += term->AddForces(displacements, gradient_);
+
+  // Inertial energy, gravity's energy, squared inertial and elastic forces.
+  const Double4 sums = blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 inertial = Splat(0), outer = Splat(0), inertial_force = Splat(0);
+    Double4 elastic_force = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      const Double4 moved = displacements[node] - start.displacements[node];
+      const Double4 ahead = moved - dt * start.velocities[node];
+      const Double4 push = inertia_[node] * ahead;
+      const Double4 weight = model_.masses[node] * gravity_;
+      const Double4 elastic = gradient_[node];
+      inertial += 0.5 * push * ahead;
+      outer -= weight * moved;
+      inertial_force += push * push;
+      elastic_force += elastic * elastic;
+      gradient_[node] = push - elastic - weight;
+      residual_[node] = -gradient_[node];
+    }
+    return Double4{Sum(inertial), Sum(outer), Sum(inertial_force), Sum(elastic_force)};
+  });
+  for (const FixedNode& fixed : fixed_nodes_) {
+    Double4& residual = residual_[static_cast<size_t>(fixed.node)];
+    residual = fixed.axes ? Splat(0) : residual;
+  }
+  const Double4 squares = blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+      sum += residual_[node] * residual_[node];
+    return sum;
+  });
+  energy_ = sums[0] + sums[1] + elastic_energy_;
+  energy_magnitude_ = sums[0] + std::abs(sums[1]) + std::abs(elastic_energy_);
+  residual_norm_ = std::sqrt(Sum(squares));
+  force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
+}
+
+absl::Status NewtonSolver::NotConverged(double relative_residual) const {
+  size_t worst = 0;
+  double largest = -1;
+  for (size_t node = 0; node < residual_.size(); ++node) {
+    const double size = Dot(residual_[node], residual_[node]);
+    if (size > largest || !std::isfinite(size)) {
+      largest = size;
+      worst = node;
+    }
+    if (!std::isfinite(size)) break;
+  }
+  return absl::AbortedError(absl::StrCat("the solve did not converge: relative residual ",
+                                         relative_residual, ", largest at node ",
+                                         model_.order.old_node[worst]));
+}
+
+absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& stop,
+                                 NodalVector& displacements, StepReport& report) {
+  const Quality& quality = model_.quality;
+  const double step_limit = quality.step_tolerance * model_.mean_edge_length;
+  for (size_t node = 0; node < inertia_.size(); ++node)
+    inertia_[node] = model_.masses[node] / (dt * dt);
+
+  {
+    ScopedTimer timer(report.assembly_seconds);
+    Evaluate(start, dt, displacements);
+  }
+  double last_step = std::numeric_limits<double>::infinity();
+  for (int32_t iteration = 0;; ++iteration) {
+    const double relative = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
+    const bool converged =
+        residual_norm_ == 0 || (relative <= quality.residual_tolerance && last_step <= step_limit);
+    if (converged) {
+      report.residual = std::max(report.residual, relative);
+      return absl::OkStatus();
+    }
+    if (iteration == quality.newton_iterations || !std::isfinite(relative))
+      return NotConverged(relative);
+    ++report.newton_iterations;
+
+    {
+      ScopedTimer timer(report.assembly_seconds);
+      EdgeBlocks& blocks = matrix_.Clear();
+      for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, blocks);
+      matrix_.Finish(inertia_);
+      pcg_.Prepare(matrix_);
+    }
+    {
+      ScopedTimer timer(report.linear_solve_seconds);
+      CLEAVE_ASSIGN_OR_RETURN(
+          const int32_t linear_iterations,
+          pcg_.Solve(matrix_, residual_, quality.linear_tolerance, stop, search_));
+      report.linear_iterations += linear_iterations;
+    }
+
+    // Line search. Evaluate replaces the residual, so what the decrease is measured against is
+    // kept.
+    ScopedTimer timer(report.assembly_seconds);
+    const double slope = -Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+      Double4 sum = Splat(0);
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+        sum += residual_[node] * search_[node];
+      return sum;
+    }));
+    const double energy = energy_;
+    const double norm = residual_norm_;
+    const double rounding = kEnergyRounding * energy_magnitude_;
+    double share = 1;
+    bool accepted = false;
+    bool at_rounding = false;
+    for (int backtrack = 0; backtrack < kMaxBacktracks; ++backtrack, share /= 2) {
+      blocks_.Run([&](int64_t begin, int64_t end) {
+        for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+          trial_[node] = displacements[node] + share * search_[node];
+      });
+      Evaluate(start, dt, trial_);
+      accepted = energy_ <= energy + kArmijo * share * slope;
+      if (accepted) break;
+      // The promised decrease drowns in rounding: there the forces judge.
+      at_rounding = share * -slope <= rounding;
+      if (at_rounding) {
+        accepted = energy_ <= energy + rounding && residual_norm_ < norm;
+        break;
+      }
+    }
+    if (accepted) {
+      double largest = 0;
+      for (const Double4& step : search_) {
+        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(step[axis]));
+      }
+      last_step = share * largest;
+      displacements.swap(trial_);
+      continue;
+    }
+    Evaluate(start, dt, displacements);
+    const double stopped_at = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
+    if (!at_rounding) return NotConverged(stopped_at);
+    report.residual = std::max(report.residual, stopped_at);
+    return absl::OkStatus();
+  }
+}
+
+int64_t NewtonSolver::bytes() const {
+  return matrix_.bytes() + pcg_.bytes() + blocks_.bytes() +
+         static_cast<int64_t>(4 * gradient_.size() * sizeof(Double4) +
+                              inertia_.size() * sizeof(double) +
+                              fixed_nodes_.size() * sizeof(FixedNode));
+}
+
+}  // namespace cleave

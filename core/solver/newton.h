@@ -1,0 +1,74 @@
+#ifndef CLEAVE_CORE_SOLVER_NEWTON_H_
+#define CLEAVE_CORE_SOLVER_NEWTON_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/base/stop_flag.h"
+#include "core/model/model.h"
+#include "core/solver/block_sums.h"
+#include "core/solver/constraints.h"
+#include "core/solver/pcg.h"
+#include "core/solver/step_report.h"
+#include "core/solver/stiffness_matrix.h"
+
+namespace cleave {
+
+// Solves one backward Euler step: finds the displacements x that minimise the incremental potential
+//
+//   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n)
+//
+// over the coordinates that are not given, by Newton's method with positive semidefinite element
+// stiffness and Armijo backtracking. Source: method note, section 7. Not thread-safe; loops run on
+// the caller's TBB arena and give the same bits for any number of threads.
+class NewtonSolver {
+ public:
+  // `model` must outlive the solver.
+  explicit NewtonSolver(const Model& model);
+
+  // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
+  // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
+  // summed norms of inertial, elastic and external forces and the last step moved no coordinate by
+  // more than quality.step_tolerance of the mean edge; or when rounding hides any further decrease.
+  // Errors: Aborted when quality.newton_iterations do not do, naming the client's id of the node
+  // with the largest residual; Cancelled. After an error `displacements` hold no meaning.
+  absl::Status Solve(const State& start, double dt, const StopFlag& stop,
+                     NodalVector& displacements, StepReport& report);
+
+  // Of the last Solve that succeeded, at its solution. Forces (N) are what each node needs from
+  // outside, besides gravity, to move as it does: 0 up to the residual at free coordinates.
+  const NodalVector& outer_forces() const { return gradient_; }
+  double elastic_energy() const { return elastic_energy_; }
+
+  const std::vector<FixedNode>& fixed_nodes() const { return fixed_nodes_; }
+  int64_t bytes() const;
+
+ private:
+  // Sets the energies, gradient, residual and their norms at `displacements`.
+  void Evaluate(const State& start, double dt, const NodalVector& displacements);
+  absl::Status NotConverged(double relative_residual) const;
+
+  const Model& model_;
+  const std::vector<FixedNode> fixed_nodes_;
+  Double4 gravity_;           // m/s^2
+  double gravity_force_ = 0;  // N, norm of all gravity forces
+  NodeBlocks blocks_;
+  StiffnessMatrix matrix_;
+  PcgSolver pcg_;
+  std::vector<double> inertia_;  // kg/s^2, mass / dt^2
+  NodalVector gradient_;         // N, dE/dx
+  NodalVector residual_;         // N, -dE/dx, 0 at given coordinates
+  NodalVector search_;           // m
+  NodalVector trial_;            // m
+
+  double energy_ = 0;            // J
+  double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
+  double elastic_energy_ = 0;    // J
+  double residual_norm_ = 0;     // N
+  double force_scale_ = 0;       // N, what the residual is held against
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SOLVER_NEWTON_H_

@@ -1,0 +1,26 @@
+#ifndef CLEAVE_CORE_SOLVER_STEP_REPORT_H_
+#define CLEAVE_CORE_SOLVER_STEP_REPORT_H_
+
+#include <algorithm>
+#include <cstdint>
+
+namespace cleave {
+
+// What steps took and reached; sums over them unless a field says otherwise.
+struct StepReport {
+  int32_t steps = 0;  // the parts of halved steps count each
+  int32_t step_halvings = 0;
+  int32_t newton_iterations = 0;
+  int32_t linear_iterations = 0;
+  int32_t break_passes = 0;
+  double residual = 0;         // worst relative force residual at which a solve stopped
+  double external_work = 0;    // J, by gravity and prescribed motions
+  double fracture_energy = 0;  // J, elastic energy lost to breaking
+  double assembly_seconds = 0;
+  double linear_solve_seconds = 0;
+  double fracture_seconds = 0;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SOLVER_STEP_REPORT_H_

@@ -1,0 +1,80 @@
+#include "core/solver/stepper.h"
+
+#include "core/base/status.h"
+
+namespace cleave {
+
+Stepper::Stepper(const Model& model)
+    : model_(model), newton_(model), displacements_(model.masses.size()) {}
+
+absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State& state,
+                           StepReport& report) {
+  // Parts of the step still to do, the next one last.
+  struct Part {
+    double start, end;
+    int32_t halvings;
+  };
+  std::vector<Part> parts = {{start, end, 0}};
+  while (!parts.empty()) {
+    const Part part = parts.back();
+    const absl::Status status = SolveStep(part.start, part.end, stop, state, report);
+    if (status.ok()) {
+      parts.pop_back();
+      continue;
+    }
+    if (!absl::IsAborted(status) || part.halvings == model_.quality.max_step_halvings)
+      return status;
+    ++report.step_halvings;
+    const double middle = 0.5 * (part.start + part.end);
+    parts.back() = {middle, part.end, part.halvings + 1};
+    parts.push_back({part.start, middle, part.halvings + 1});
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, State& state,
+                                StepReport& report) {
+  const double dt = end - start;
+  // Free nodes go on as they moved; given ones are where they will be.
+  for (size_t node = 0; node < displacements_.size(); ++node)
+    displacements_[node] = state.displacements[node] + dt * state.velocities[node];
+  ApplyMotions(model_, end, displacements_);
+  CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
+
+  AddWork(state, report);
+  for (size_t node = 0; node < displacements_.size(); ++node)
+    state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
+  state.displacements.swap(displacements_);
+  ++report.steps;
+  return absl::OkStatus();
+}
+
+void Stepper::AddWork(const State& state, StepReport& report) const {
+  if (model_.gravity) {
+    Double4 sum = Splat(0);
+    for (size_t node = 0; node < displacements_.size(); ++node)
+      sum += model_.masses[node] * (displacements_[node] - state.displacements[node]);
+    report.external_work += Dot(sum, ToDouble4(*model_.gravity));
+  }
+  Double4 sum = Splat(0);
+  for (const FixedNode& fixed : newton_.fixed_nodes()) {
+    const auto node = static_cast<size_t>(fixed.node);
+    const Double4 power =
+        newton_.outer_forces()[node] * (displacements_[node] - state.displacements[node]);
+    sum += fixed.axes ? power : Splat(0);
+  }
+  report.external_work += Sum(sum);
+}
+
+int64_t Stepper::bytes() const {
+  return newton_.bytes() + static_cast<int64_t>(displacements_.size() * sizeof(Double4));
+}
+
+double KineticEnergy(const Model& model, const State& state) {
+  double sum = 0;
+  for (size_t node = 0; node < state.velocities.size(); ++node)
+    sum += 0.5 * model.masses[node] * Dot(state.velocities[node], state.velocities[node]);
+  return sum;
+}
+
+}  // namespace cleave

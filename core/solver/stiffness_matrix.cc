@@ -1,0 +1,109 @@
+#include "core/solver/stiffness_matrix.h"
+
+#include <cstring>
+
+#include "core/base/parallel.h"
+
+namespace cleave {
+namespace {
+
+constexpr int64_t kGrain = 2048;  // rows
+
+constexpr Int64x4 kCoordinates = {-1, -1, -1, 0};
+
+// Adds B (x - y) for the blocks of one row.
+inline Double4 RowSum(const float* block, const int32_t* column, const int32_t* end, Double4 x,
+                      const Double4* values) {
+  Double4 sum0 = Splat(0), sum1 = Splat(0), sum2 = Splat(0);
+  for (; column != end; ++column, block += 9) {
+    const Double4 d = x - values[*column];
+    sum0 += LoadFloats(block) * Splat(d[0]);
+    sum1 += LoadFloats(block + 3) * Splat(d[1]);
+    sum2 += LoadFloats(block + 6) * Splat(d[2]);
+  }
+  return sum0 + sum1 + sum2;
+}
+
+}  // namespace
+
+StiffnessMatrix::StiffnessMatrix(const std::vector<std::array<int32_t, 2>>& edges,
+                                 int64_t node_count)
+    : upper_(EdgeBlocksSize(static_cast<int64_t>(edges.size())), 0.0f),
+      upper_begin_(static_cast<size_t>(node_count) + 1, 0),
+      upper_node_(edges.size()),
+      lower_(upper_.size(), 0.0f),
+      lower_begin_(upper_begin_),
+      lower_node_(edges.size()),
+      lower_edge_(edges.size()) {
+  for (const auto& [small, large] : edges) {
+    ++upper_begin_[static_cast<size_t>(small) + 1];
+    ++lower_begin_[static_cast<size_t>(large) + 1];
+  }
+  for (size_t node = 0; node < static_cast<size_t>(node_count); ++node) {
+    upper_begin_[node + 1] += upper_begin_[node];
+    lower_begin_[node + 1] += lower_begin_[node];
+  }
+  std::vector<int32_t> next = lower_begin_;
+  for (size_t edge = 0; edge < edges.size(); ++edge) {
+    upper_node_[edge] = edges[edge][1];
+    const auto slot = static_cast<size_t>(next[static_cast<size_t>(edges[edge][1])]++);
+    lower_node_[slot] = edges[edge][0];
+    lower_edge_[slot] = static_cast<int32_t>(edge);
+  }
+}
+
+EdgeBlocks& StiffnessMatrix::Clear() {
+  ParallelFor(static_cast<int64_t>(upper_.size()), 1 << 18, [&](int64_t begin, int64_t end) {
+    std::memset(upper_.data() + begin, 0, static_cast<size_t>(end - begin) * sizeof(float));
+  });
+  return upper_;
+}
+
+void StiffnessMatrix::Finish(const std::vector<double>& inertia) {
+  inertia_ = &inertia;
+  ParallelFor(static_cast<int64_t>(lower_edge_.size()), kGrain, [&](int64_t begin, int64_t end) {
+    for (int64_t slot = begin; slot < end; ++slot) {
+      const float* from = upper_.data() + 9 * int64_t{lower_edge_[static_cast<size_t>(slot)]};
+      float* to = lower_.data() + 9 * slot;
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) to[3 * column + row] = from[3 * row + column];
+      }
+    }
+  });
+}
+
+void StiffnessMatrix::Multiply(const NodalVector& x, int64_t begin, int64_t end,
+                               NodalVector& product) const {
+  for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+    const Double4 sum = (*inertia_)[node] * x[node] +
+                        RowSum(upper_.data() + 9 * int64_t{upper_begin_[node]},
+                               upper_node_.data() + upper_begin_[node],
+                               upper_node_.data() + upper_begin_[node + 1], x[node], x.data()) +
+                        RowSum(lower_.data() + 9 * int64_t{lower_begin_[node]},
+                               lower_node_.data() + lower_begin_[node],
+                               lower_node_.data() + lower_begin_[node + 1], x[node], x.data());
+    product[node] = kCoordinates ? sum : Splat(0);
+  }
+}
+
+void StiffnessMatrix::DiagonalBlock(int64_t node, Double4 columns[3]) const {
+  const auto n = static_cast<size_t>(node);
+  for (int k = 0; k < 3; ++k) {
+    Double4 sum = Splat(0);
+    for (int64_t edge = upper_begin_[n]; edge < upper_begin_[n + 1]; ++edge)
+      sum += LoadFloats(upper_.data() + 9 * edge + 3 * k);
+    for (int64_t slot = lower_begin_[n]; slot < lower_begin_[n + 1]; ++slot)
+      sum += LoadFloats(lower_.data() + 9 * slot + 3 * k);
+    sum[k] += (*inertia_)[n];
+    columns[k] = kCoordinates ? sum : Splat(0);
+  }
+}
+
+int64_t StiffnessMatrix::bytes() const {
+  return static_cast<int64_t>((upper_.size() + lower_.size()) * sizeof(float) +
+                              (upper_begin_.size() + upper_node_.size() + lower_begin_.size() +
+                               lower_node_.size() + lower_edge_.size()) *
+                                  sizeof(int32_t));
+}
+
+}  // namespace cleave

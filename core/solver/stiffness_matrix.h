@@ -1,0 +1,50 @@
+#ifndef CLEAVE_CORE_SOLVER_STIFFNESS_MATRIX_H_
+#define CLEAVE_CORE_SOLVER_STIFFNESS_MATRIX_H_
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/double4.h"
+#include "core/model/nodal_vector.h"
+#include "core/model/tet_term.h"
+
+namespace cleave {
+
+// The symmetric matrix of a backward Euler step, mass / dt^2 + elastic stiffness, in 3x3 blocks on
+// the rest edge graph: the pattern never changes. Blocks are float: they only steer the search, and
+// in the form of EdgeBlocks translations stay exact. Not thread-safe; loops run on the caller's TBB
+// arena and give the same bits for any number of threads.
+class StiffnessMatrix {
+ public:
+  // `edges` is Incidence::edges; it is not kept.
+  StiffnessMatrix(const std::vector<std::array<int32_t, 2>>& edges, int64_t node_count);
+
+  // Sets all blocks to zero and hands them out to be added to; then call Finish.
+  EdgeBlocks& Clear();
+  // Takes over what was added. `inertia` is mass / dt^2, kg/s^2, a node each, and must stay as it
+  // is until the next call.
+  void Finish(const std::vector<double>& inertia);
+
+  // (A x) of nodes [begin, end).
+  void Multiply(const NodalVector& x, int64_t begin, int64_t end, NodalVector& product) const;
+  // The diagonal block of a node, by columns. Symmetric to float rounding.
+  void DiagonalBlock(int64_t node, Double4 columns[3]) const;
+
+  int64_t node_count() const { return static_cast<int64_t>(upper_begin_.size()) - 1; }
+  int64_t bytes() const;
+
+ private:
+  EdgeBlocks upper_;                  // by edge: the row of its smaller node
+  std::vector<int32_t> upper_begin_;  // of each node, nodes + 1
+  std::vector<int32_t> upper_node_;   // the edge's larger node
+  EdgeBlocks lower_;                  // the same blocks turned, in rows of their larger nodes
+  std::vector<int32_t> lower_begin_;
+  std::vector<int32_t> lower_node_;
+  std::vector<int32_t> lower_edge_;
+  const std::vector<double>* inertia_ = nullptr;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SOLVER_STIFFNESS_MATRIX_H_

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/core/simulation/kuhn_mesh.h"
+#include "tests/unit/core/simulation/test_scene.h"
+
+namespace cleave {
+namespace {
+
+constexpr double kFar = 1e6;
+
+TEST(ClosedForm, ABodyFallsAsItsStepsAddUp) {
+  const TetMesh mesh = KuhnBox({3, 2, 2}, {1.5, 1, 1}, {100, 200, -50});
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  scene.gravity = Vec3{0, 0, -9.81};
+  auto simulation = MustCreate(scene, mesh);
+  const StopFlag stop;
+  const int n = 30;
+  for (int step = 0; step < n; ++step) {
+    const auto report = simulation->Advance(stop);
+    ASSERT_TRUE(report.ok()) << report.status();
+    EXPECT_NEAR(report->elastic_energy, 0, 1e-18);
+  }
+  const double drop = 9.81 * 1e-4 * n * (n + 1) / 2;
+  for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
+    EXPECT_NEAR(simulation->positions()[node][0], mesh.rest_positions[node][0], 1e-12);
+    EXPECT_NEAR(simulation->positions()[node][2], mesh.rest_positions[node][2] - drop, 1e-12);
+  }
+}
+
+// A row of the reference table: E = 1, nu = 0.3 at stretch l, lateral stretch and nominal stress.
+struct Uniaxial {
+  double stretch, lateral, nominal;
+};
+class UniaxialStretch : public ::testing::TestWithParam<Uniaxial> {};
+
+TEST_P(UniaxialStretch, NarrowsAndPullsAsTheClosedForm) {
+  const TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
+  Scene scene = TightScene(1, 0.3, 1e-9, 1);
+  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
+  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
+  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
+  AddMotion(scene, "x0", {true, false, false});
+  AddMotion(scene, "y0", {false, true, false});
+  AddMotion(scene, "z0", {false, false, true});
+  const auto [stretch, lateral, nominal] = GetParam();
+  Motion& pull = AddMotion(scene, "x1", {true, false, false});
+  pull.keyframes = {{0, {0, 0, 0}, 0}, {4, {stretch - 1, 0, 0}, 0}};
+  auto simulation = MustCreate(scene, mesh);
+  const StopFlag stop;
+  FrameReport last;
+  for (int step = 0; step < 10; ++step) {
+    auto report = simulation->Advance(stop);
+    ASSERT_TRUE(report.ok()) << report.status();
+    last = *report;
+  }
+  EXPECT_NEAR(last.motion_forces.back()[0], nominal, 1e-6);
+  EXPECT_NEAR(simulation->positions().back()[1], lateral, 1e-6);
+  EXPECT_NEAR(simulation->positions().back()[2], lateral, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Reference, UniaxialStretch,
+                         ::testing::Values(Uniaxial{0.5, 1.0954451150103321, -0.7307692307692306},
+                                           Uniaxial{0.9, 1.030402055055078, -0.10757623720586677},
+                                           Uniaxial{1.25, 0.9295160030897801, 0.21492307692307688},
+                                           Uniaxial{2.0, 0.7745966692414834, 0.6538461538461537},
+                                           Uniaxial{3.0, 0.6497862896539309, 1.0997150997150995}));
+
+TEST(ClosedForm, APatchUnderAnAffineBoundaryIsAffineInside) {
+  const TetMesh mesh = KuhnBox({4, 4, 4}, {1, 1, 1});
+  Scene scene = TightScene(1e5, 0.3, 1e-6, 1);
+  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
+  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
+  AddBoxSet(scene, "y1", {-kFar, 1 - 1e-9, -kFar}, {kFar, kFar, kFar});
+  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
+  AddBoxSet(scene, "z1", {-kFar, -kFar, 1 - 1e-9}, {kFar, kFar, kFar});
+  const double stretch[3] = {0.1, -0.05, 0.2};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    std::array<bool, 3> axes = {axis == 0, axis == 1, axis == 2};
+    AddMotion(scene, std::string(1, "xyz"[axis]) + "0", axes);
+    Motion& pull = AddMotion(scene, std::string(1, "xyz"[axis]) + "1", axes);
+    Vec3 shift = {0, 0, 0};
+    shift[axis] = stretch[axis];
+    pull.keyframes = {{0, {0, 0, 0}, 0}, {1, shift, 0}};
+  }
+  auto simulation = MustCreate(scene, mesh);
+  const StopFlag stop;
+  for (int step = 0; step < 3; ++step) ASSERT_TRUE(simulation->Advance(stop).ok());
+  for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(simulation->positions()[node][axis],
+                  mesh.rest_positions[node][axis] * (1 + stretch[axis]), 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cleave
