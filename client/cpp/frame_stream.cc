@@ -1,0 +1,218 @@
+#include "client/cpp/frame_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/rpc_error.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+// Above any frame of the largest mesh; memory is taken as bytes come, not as they are announced.
+constexpr uint64_t kMaxFrameBytes = uint64_t{2} << 30;
+
+// A server that restarts may replay for a while: patience of about two minutes.
+constexpr int kMaxAttempts = 30;
+
+// A cut shows as one of these, or as a good end without StreamEnd.
+bool IsCut(const absl::Status& status) { return absl::IsUnavailable(status); }
+
+}  // namespace
+
+FrameStream::FrameStream(Client& client, FrameStreamOptions options)
+    : client_(client), options_(std::move(options)), position_(options_.resume) {}
+
+FrameStream::~FrameStream() { Disconnect(); }
+
+bool FrameStream::cancelled() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return cancelled_;
+}
+
+void FrameStream::Cancel() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  cancelled_ = true;
+  if (context_ != nullptr) context_->TryCancel();
+}
+
+void FrameStream::Disconnect() {
+  if (reader_ == nullptr) return;
+  context_->TryCancel();
+  v1::StreamFramesResponse rest;
+  while (reader_->Read(&rest)) {
+  }
+  reader_->Finish();  // its status was read, or is the cancellation just made
+  const std::lock_guard<std::mutex> lock(mutex_);
+  reader_.reset();
+  context_.reset();
+}
+
+absl::Status FrameStream::Connect() {
+  v1::StreamFramesRequest request;
+  request.set_session(options_.session);
+  request.set_first_frame(options_.first_frame);
+  request.set_follow(options_.follow);
+  if (options_.stop_frame.has_value()) request.set_stop_frame(*options_.stop_frame);
+  if (position_.has_value()) {
+    request.set_first_frame(position_->frame + 1);
+    request.mutable_resume()->set_epoch(position_->epoch);
+    request.mutable_resume()->set_frame(position_->frame);
+    request.mutable_resume()->set_state_hash(position_->state_hash);
+  }
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (cancelled_) return absl::CancelledError("the frame stream was cancelled");
+    context_ = std::make_unique<grpc::ClientContext>();
+  }
+  reader_ = client_.frames().StreamFrames(context_.get(), request);
+  assembly_.clear();
+  assembly_bytes_ = 0;
+  v1::StreamFramesResponse response;
+  if (!reader_->Read(&response)) {
+    const grpc::Status status = reader_->Finish();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    reader_.reset();
+    context_.reset();
+    if (status.ok()) return absl::UnavailableError("the frame stream ended before it began");
+    return StatusFromRpc(status, absl::StrCat("streaming frames of ", options_.session));
+  }
+  if (!response.has_start())
+    return absl::DataLossError("the frame stream does not begin with its header");
+  if (start_.has_value() && (start_->header() != response.start().header() ||
+                             start_->mesh_asset() != response.start().mesh_asset()))
+    return absl::FailedPreconditionError(
+        absl::StrCat(options_.session, " is another session now than the one that was streamed"));
+  if (!start_.has_value()) {
+    CLEAVE_RETURN_IF_ERROR(ParseStreamHeader(response.start().header()).status());
+    if (options_.rest_positions.has_value()) {
+      auto decoder = FrameDecoder::Create(response.start().header(), *options_.rest_positions);
+      if (!decoder.ok()) return decoder.status();
+      decoder_.emplace(*std::move(decoder));
+    }
+  }
+  // A decoder that holds nothing cannot take deltas up to a frame that only the caller holds.
+  if (response.start().resumed() && decoder_.has_value() &&
+      decoder_->frame().frame != position_->frame)
+    return absl::FailedPreconditionError("a stream that is decoded begins at a key frame");
+  start_ = std::move(*response.mutable_start());
+  return absl::OkStatus();
+}
+
+absl::Status FrameStream::Recover(const absl::Status& why) {
+  Disconnect();
+  if (cancelled() || (client_.stop() != nullptr && client_.stop()->requested()))
+    return absl::CancelledError("the frame stream was cancelled");
+  if (!IsCut(why)) return why;
+  RetryPolicy policy = client_.policy();
+  policy.max_attempts = kMaxAttempts;
+  const auto delay = RetryDelay(policy, ++attempts_, why);
+  if (!delay.has_value()) return why;
+  if (options_.on_cut) options_.on_cut(why, *delay);
+  if (!WaitUnlessStopped(*delay, client_.stop()))
+    return absl::CancelledError("the frame stream was cancelled");
+  return absl::OkStatus();
+}
+
+absl::Status FrameStream::Open() {
+  while (reader_ == nullptr) {
+    const absl::Status status = Connect();
+    if (status.ok()) break;
+    CLEAVE_RETURN_IF_ERROR(Recover(status));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Next() {
+  while (!end_.has_value()) {
+    CLEAVE_RETURN_IF_ERROR(Open());
+    auto frame = ReadOne();
+    if (frame.ok() && frame->has_value()) {
+      attempts_ = 0;
+      return frame;
+    }
+    if (!frame.ok()) CLEAVE_RETURN_IF_ERROR(Recover(frame.status()));
+  }
+  Disconnect();
+  return std::nullopt;
+}
+
+absl::Status FrameStream::AddChunk(const v1::FrameChunk& chunk, bool& whole) {
+  head_frame_ = std::max(head_frame_, chunk.head_frame());
+  if (assembly_bytes_ == 0) {
+    assembly_frame_ = chunk.frame();
+    assembly_bytes_ = chunk.frame_bytes();
+    assembly_.clear();
+  }
+  if (chunk.frame() != assembly_frame_ || chunk.frame_bytes() != assembly_bytes_ ||
+      chunk.offset() != assembly_.size() || chunk.payload().empty() ||
+      assembly_bytes_ > kMaxFrameBytes ||
+      chunk.payload().size() > assembly_bytes_ - assembly_.size())
+    return absl::DataLossError(
+        absl::StrCat("a piece of frame ", chunk.frame(), " does not fit the pieces before it"));
+  assembly_.append(chunk.payload());
+  whole = assembly_.size() == assembly_bytes_;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
+  v1::StreamFramesResponse response;
+  while (reader_->Read(&response)) {
+    if (response.has_heartbeat()) {
+      head_frame_ = std::max(head_frame_, response.heartbeat().head_frame());
+    } else if (response.has_end()) {
+      if (response.end().reason() == v1::END_REASON_SHUTDOWN)
+        return absl::UnavailableError("the server shuts down");
+      end_ = response.end();
+      return std::nullopt;
+    } else if (response.has_chunk()) {
+      bool whole = false;
+      CLEAVE_RETURN_IF_ERROR(AddChunk(response.chunk(), whole));
+      if (!whole) continue;
+      assembly_bytes_ = 0;
+      auto frame = Accept(std::move(assembly_));
+      assembly_.clear();
+      if (!frame.ok() || frame->has_value()) return frame;
+    }
+  }
+  const grpc::Status status = reader_->Finish();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    reader_.reset();
+    context_.reset();
+  }
+  if (status.ok()) return absl::UnavailableError("the frame stream was cut");
+  return StatusFromRpc(status, absl::StrCat("streaming frames of ", options_.session));
+}
+
+// Gives nullopt for a frame that was given before: a server that cannot resume begins at a key
+// frame, and frames of one epoch have the same bytes whenever they are sent.
+absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string bytes) {
+  StreamedFrame frame;
+  {
+    const absl::StatusOr<FrameParts> parts = SplitFrame(bytes);
+    if (!parts.ok()) return parts.status();
+    frame.header = parts->header;
+  }
+  const FrameHeader& header = frame.header;
+  if (position_.has_value() && header.epoch == position_->epoch &&
+      header.frame <= position_->frame) {
+    if (header.frame == position_->frame && header.state_hash != position_->state_hash)
+      return absl::DataLossError(
+          absl::StrCat("frame ", header.frame, " is not the one that was given under this number"));
+    return std::nullopt;
+  }
+  const bool continues = position_.has_value() && header.epoch == position_->epoch &&
+                         header.base_frame == position_->frame;
+  if (header.kind != FrameKind::kKey && !continues)
+    return absl::DataLossError(absl::StrCat("frame ", header.frame, " builds on frame ",
+                                            header.base_frame, ", which was not sent"));
+  if (decoder_.has_value()) CLEAVE_RETURN_IF_ERROR(decoder_->Apply(bytes));
+  position_ = FramePosition{header.epoch, header.frame, header.state_hash};
+  head_frame_ = std::max(head_frame_, header.frame);
+  frame.bytes = std::move(bytes);
+  return frame;
+}
+
+}  // namespace cleave

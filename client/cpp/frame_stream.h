@@ -1,0 +1,120 @@
+#ifndef CLEAVE_CLIENT_CPP_FRAME_STREAM_H_
+#define CLEAVE_CLIENT_CPP_FRAME_STREAM_H_
+
+#include <grpcpp/client_context.h>
+#include <grpcpp/support/sync_stream.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "cleave/v1/frame.pb.h"
+#include "client/cpp/client.h"
+#include "core/stream/frame_decoder.h"
+#include "core/stream/frame_header.h"
+
+namespace cleave {
+
+// A frame that the client holds, from which a stream goes on.
+struct FramePosition {
+  uint32_t epoch = 0;
+  int64_t frame = -1;
+  uint64_t state_hash = 0;
+};
+
+struct FrameStreamOptions {
+  std::string session;  // "sessions/{id}"
+  // Where to begin: after `resume`, or at the newest key frame at or before `first_frame`.
+  std::optional<FramePosition> resume;
+  int64_t first_frame = 0;
+  std::optional<int64_t> stop_frame;  // last frame wanted; absent: until the run's goal
+  bool follow = false;                // stay when the goal is reached, until Cancel
+  // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder().
+  std::optional<std::vector<Vec3>> rest_positions;
+  // Told whenever the stream was cut and is tried again after `delay`. May be empty.
+  std::function<void(const absl::Status& why, std::chrono::milliseconds delay)> on_cut;
+};
+
+// One committed frame as it is in the session's log.
+struct StreamedFrame {
+  FrameHeader header;
+  std::string bytes;  // exactly one frame (core/stream/FORMAT.md), checksums checked
+};
+
+// The frames of a session in order, each once, across cuts of the connection and restarts of the
+// server: after a cut it goes on behind the last frame by (epoch, frame, state hash). Next from one
+// thread; Cancel from any.
+class FrameStream {
+ public:
+  // `client` must outlive the stream.
+  FrameStream(Client& client, FrameStreamOptions options);
+  ~FrameStream();
+  FrameStream(const FrameStream&) = delete;
+  FrameStream& operator=(const FrameStream&) = delete;
+
+  // Connects and waits for the stream's header. Next does it where it was not done. Errors:
+  // NotFound, Unavailable after many attempts, FailedPrecondition when another session took the
+  // name, Cancelled.
+  absl::Status Open();
+
+  // The next frame, or nullopt after the clean end, of which end() tells. Errors: those of Open;
+  // DataLoss when the server sends what no log holds.
+  absl::StatusOr<std::optional<StreamedFrame>> Next();
+
+  // Valid after Open.
+  const std::string& header_bytes() const { return start_->header(); }
+  const std::string& mesh_asset() const { return start_->mesh_asset(); }
+  // Newest committed frame that the server told of.
+  int64_t head_frame() const { return head_frame_; }
+  // The last frame that Next gave (or `resume`).
+  const std::optional<FramePosition>& position() const { return position_; }
+  // Set when Next has given nullopt.
+  const std::optional<v1::StreamEnd>& end() const { return end_; }
+  // Where rest_positions were given: stands at the last frame that Next gave; null before.
+  const FrameDecoder* decoder() const { return decoder_.has_value() ? &*decoder_ : nullptr; }
+
+  // Ends Next soon with Cancelled.
+  void Cancel();
+
+ private:
+  absl::Status Connect();
+  void Disconnect();
+  // Reads messages until a whole new frame or the end. Unavailable: cut, may be tried again.
+  absl::StatusOr<std::optional<StreamedFrame>> ReadOne();
+  absl::Status AddChunk(const v1::FrameChunk& chunk, bool& whole);
+  absl::StatusOr<std::optional<StreamedFrame>> Accept(std::string bytes);
+  // After a failed attempt: waits, or says why not to go on.
+  absl::Status Recover(const absl::Status& why);
+  bool cancelled();
+
+  Client& client_;
+  FrameStreamOptions options_;
+  std::optional<FramePosition> position_;
+  std::optional<v1::StreamStart> start_;
+  std::optional<v1::StreamEnd> end_;
+  std::optional<FrameDecoder> decoder_;
+  int64_t head_frame_ = -1;
+  int attempts_ = 0;
+
+  // The frame that chunks are put together to.
+  std::string assembly_;
+  uint64_t assembly_bytes_ = 0;  // wanted; 0: between frames
+  int64_t assembly_frame_ = 0;
+
+  std::mutex mutex_;  // guards context_'s exchange against Cancel
+  bool cancelled_ = false;
+  std::unique_ptr<grpc::ClientContext> context_;
+  std::unique_ptr<grpc::ClientReader<v1::StreamFramesResponse>> reader_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_CPP_FRAME_STREAM_H_

@@ -1,0 +1,86 @@
+#include "client/cpp/client.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/unit/client/cpp/fake_server.h"
+
+namespace cleave {
+namespace {
+
+// Loses the answer of the first call of each kind, after having done the work.
+class ForgetfulSessions : public v1::SessionService::Service {
+ public:
+  grpc::Status CreateSession(grpc::ServerContext*, const v1::CreateSessionRequest* request,
+                             v1::CreateSessionResponse* response) override {
+    created_ids.insert(request->request_id());
+    response->mutable_session()->set_name(SessionName(request->session_id()));
+    return Lose(create_calls);
+  }
+  grpc::Status DeleteSession(grpc::ServerContext*, const v1::DeleteSessionRequest*,
+                             google::protobuf::Empty*) override {
+    if (delete_calls > 0) return grpc::Status(grpc::StatusCode::NOT_FOUND, "gone");
+    return Lose(delete_calls);
+  }
+  grpc::Status ListSessions(grpc::ServerContext*, const v1::ListSessionsRequest* request,
+                            v1::ListSessionsResponse* response) override {
+    response->add_sessions()->set_name(absl::StrCat("sessions/after-", request->page_token()));
+    if (request->page_token() != "2")
+      response->set_next_page_token(request->page_token().empty() ? "1" : "2");
+    return grpc::Status::OK;
+  }
+
+  static grpc::Status Lose(int& calls) {
+    return ++calls == 1 ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "lost") : grpc::Status::OK;
+  }
+  int create_calls = 0;
+  int delete_calls = 0;
+  std::set<std::string> created_ids;
+};
+
+TEST(Client, LostAnswerIsAskedForAgainUnderTheSameRequestId) {
+  ForgetfulSessions service;
+  FakeServer server(service);
+  v1::CreateSessionRequest request;
+  request.set_session_id("rod");
+  const auto response = server.client().CreateSession(request);
+  ASSERT_TRUE(response.ok()) << response.status();
+  EXPECT_EQ(response->session().name(), "sessions/rod");
+  EXPECT_EQ(service.create_calls, 2);
+  EXPECT_EQ(service.created_ids.size(), 1u);
+  EXPECT_EQ(service.created_ids.begin()->size(), 32u);
+}
+
+TEST(Client, DeletionWhoseAnswerWasLostSucceeded) {
+  ForgetfulSessions service;
+  FakeServer server(service);
+  EXPECT_TRUE(server.client().DeleteSession("sessions/rod", false).ok());
+}
+
+TEST(Client, AllPagesAreListed) {
+  ForgetfulSessions service;
+  FakeServer server(service);
+  const auto sessions = server.client().ListSessions();
+  ASSERT_TRUE(sessions.ok()) << sessions.status();
+  ASSERT_EQ(sessions->size(), 3u);
+  EXPECT_EQ((*sessions)[2].name(), "sessions/after-2");
+}
+
+TEST(Client, NobodyAtTheAddressIsUnavailableAndNamesIt) {
+  const auto client =
+      Client::Connect("unix:/nonexistent/socket", std::chrono::milliseconds(300), nullptr);
+  EXPECT_TRUE(absl::IsUnavailable(client.status())) << client.status();
+  EXPECT_THAT(std::string(client.status().message()),
+              testing::HasSubstr("unix:/nonexistent/socket"));
+}
+
+TEST(Client, NamesAndIdsMayBeTypedEitherWay) {
+  EXPECT_EQ(SessionName("rod"), "sessions/rod");
+  EXPECT_EQ(SessionName("sessions/rod"), "sessions/rod");
+  EXPECT_EQ(SessionId("sessions/rod"), "rod");
+}
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,231 @@
+#include "client/cpp/frame_stream.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "core/stream/frame_encoder.h"
+#include "tests/unit/client/cpp/fake_server.h"
+
+namespace cleave {
+namespace {
+
+constexpr int kFrames = 12;
+constexpr int kNodes = 500;
+
+std::vector<Vec3> RestPositions() {
+  std::vector<Vec3> positions;
+  for (int i = 0; i < kNodes; ++i) positions.push_back({0.01 * i, 0.02 * (i % 7), 0.03 * (i % 5)});
+  return positions;
+}
+
+// A recorded session: its log in memory, served as the protocol says, with cuts where told.
+class FakeFrames : public v1::FrameService::Service {
+ public:
+  FakeFrames() {
+    const std::vector<Vec3> rest = RestPositions();
+    StreamParameters parameters;
+    parameters.mesh_sha256 = std::string(32, 'm');
+    parameters.edge_count = 1000;
+    parameters.keyframe_interval = 5;
+    const StreamHeader header_fields = MakeStreamHeader(parameters, rest).value();
+    FrameEncoder encoder = FrameEncoder::Create(header_fields, rest).value();
+    header = encoder.header_bytes();
+    for (int i = 0; i < kFrames; ++i) {
+      Frame frame;
+      frame.frame = i;
+      frame.time = i / 24.0;
+      frame.positions = rest;
+      for (Vec3& position : frame.positions) position[2] += 0.01 * i * position[0];
+      for (int edge = 0; edge < i; ++edge) frame.broken_edges.push_back(edge);
+      frames.push_back(encoder.Encode(frame).value());
+    }
+  }
+
+  grpc::Status StreamFrames(grpc::ServerContext* context, const v1::StreamFramesRequest* request,
+                            grpc::ServerWriter<v1::StreamFramesResponse>* writer) override {
+    ++streams;
+    if (refusals > 0) {
+      --refusals;
+      return grpc::Status(grpc::StatusCode::UNAVAILABLE, "restarting");
+    }
+    int64_t first = request->first_frame() / 5 * 5;
+    const bool resumed = can_resume && request->has_resume() &&
+                         frames[static_cast<size_t>(request->resume().frame())].header.state_hash ==
+                             request->resume().state_hash();
+    if (resumed) first = request->resume().frame() + 1;
+    v1::StreamFramesResponse message;
+    message.mutable_start()->set_header(header);
+    message.mutable_start()->set_first_frame(first);
+    message.mutable_start()->set_resumed(resumed);
+    message.mutable_start()->set_mesh_asset("mesh");
+    writer->Write(message);
+    const int64_t last = request->has_stop_frame() ? request->stop_frame() : kFrames - 1;
+    for (int64_t i = first; i <= last; ++i) {
+      std::string bytes = frames[static_cast<size_t>(i)].bytes;
+      if (i == damaged_frame) bytes[bytes.size() / 2] ^= 1;
+      for (size_t at = 0; at < bytes.size(); at += 300) {
+        if (i == cut_in_frame && at > 0) {
+          cut_in_frame = -1;
+          return cut_status;
+        }
+        message.mutable_chunk()->set_frame(i);
+        message.mutable_chunk()->set_offset(at);
+        message.mutable_chunk()->set_frame_bytes(bytes.size());
+        message.mutable_chunk()->set_payload(bytes.substr(at, 300));
+        message.mutable_chunk()->set_head_frame(kFrames - 1);
+        writer->Write(message);
+      }
+      if (i == 3 && heartbeat) {
+        message.mutable_heartbeat()->set_head_frame(kFrames - 1);
+        writer->Write(message);
+      }
+    }
+    while (request->follow() && !context->IsCancelled())
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (end_cleanly) {
+      message.mutable_end()->set_last_frame(last);
+      message.mutable_end()->set_reason(v1::END_REASON_GOAL_REACHED);
+      writer->Write(message);
+    }
+    return grpc::Status::OK;
+  }
+
+  std::string header;
+  std::vector<EncodedFrame> frames;
+  int cut_in_frame = -1;
+  grpc::Status cut_status{grpc::StatusCode::UNAVAILABLE, "cut"};
+  int damaged_frame = -1;
+  int refusals = 0;
+  bool can_resume = true;
+  bool heartbeat = true;
+  bool end_cleanly = true;
+  int streams = 0;
+};
+
+// All frames that the stream gives until its end or its error.
+std::vector<int64_t> Drain(FrameStream& stream, absl::Status& status,
+                           std::string* bytes = nullptr) {
+  std::vector<int64_t> numbers;
+  while (true) {
+    auto frame = stream.Next();
+    status = frame.status();
+    if (!frame.ok() || !frame->has_value()) return numbers;
+    numbers.push_back((*frame)->header.frame);
+    if (bytes != nullptr) bytes->append((*frame)->bytes);
+  }
+}
+
+FrameStreamOptions Options() {
+  FrameStreamOptions options;
+  options.session = "sessions/rod";
+  return options;
+}
+
+std::vector<int64_t> Numbers(int64_t from, int64_t to) {
+  std::vector<int64_t> numbers;
+  for (int64_t i = from; i <= to; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+TEST(FrameStream, GivesEveryFrameOnceAsItIsInTheLogAndDecodesIt) {
+  FakeFrames service;
+  FakeServer server(service);
+  FrameStreamOptions options = Options();
+  options.rest_positions = RestPositions();
+  FrameStream stream(server.client(), options);
+  absl::Status status;
+  std::string bytes, expected;
+  EXPECT_EQ(Drain(stream, status, &bytes), Numbers(0, kFrames - 1));
+  EXPECT_TRUE(status.ok()) << status;
+  for (const EncodedFrame& frame : service.frames) expected += frame.bytes;
+  EXPECT_EQ(bytes, expected);
+  ASSERT_NE(stream.decoder(), nullptr);
+  EXPECT_EQ(stream.decoder()->frame().frame, kFrames - 1);
+  EXPECT_EQ(stream.decoder()->frame().broken_edges.size(), kFrames - 1u);
+  EXPECT_EQ(stream.end()->reason(), v1::END_REASON_GOAL_REACHED);
+  EXPECT_EQ(stream.mesh_asset(), "mesh");
+  EXPECT_EQ(stream.head_frame(), kFrames - 1);
+}
+
+TEST(FrameStream, CutInsideAFrameLosesAndRepeatsNothing) {
+  for (const bool can_resume : {true, false}) {
+    for (const grpc::Status& cut :
+         {grpc::Status(grpc::StatusCode::UNAVAILABLE, "cut"), grpc::Status(grpc::Status::OK)}) {
+      FakeFrames service;
+      service.cut_in_frame = 7;
+      service.cut_status = cut;
+      service.can_resume = can_resume;
+      FakeServer server(service);
+      FrameStreamOptions options = Options();
+      options.rest_positions = RestPositions();
+      int cuts = 0;
+      options.on_cut = [&](const absl::Status&, std::chrono::milliseconds) { ++cuts; };
+      FrameStream stream(server.client(), options);
+      absl::Status status;
+      EXPECT_EQ(Drain(stream, status), Numbers(0, kFrames - 1));
+      EXPECT_TRUE(status.ok()) << status;
+      EXPECT_EQ(cuts, 1);
+      EXPECT_EQ(service.streams, 2);
+      EXPECT_EQ(stream.position()->state_hash, service.frames.back().header.state_hash);
+    }
+  }
+}
+
+TEST(FrameStream, GoesOnBehindAFrameThatTheCallerHolds) {
+  FakeFrames service;
+  FakeServer server(service);
+  FrameStreamOptions options = Options();
+  options.resume = FramePosition{0, 6, service.frames[6].header.state_hash};
+  options.stop_frame = 9;
+  FrameStream stream(server.client(), options);
+  absl::Status status;
+  EXPECT_EQ(Drain(stream, status), Numbers(7, 9));
+  EXPECT_TRUE(status.ok()) << status;
+}
+
+TEST(FrameStream, DamagedFrameIsDataLossAndNoFrame) {
+  FakeFrames service;
+  service.damaged_frame = 4;
+  FakeServer server(service);
+  FrameStream stream(server.client(), Options());
+  absl::Status status;
+  EXPECT_EQ(Drain(stream, status), Numbers(0, 3));
+  EXPECT_TRUE(absl::IsDataLoss(status)) << status;
+}
+
+TEST(FrameStream, ServerThatRestartsIsWaitedFor) {
+  FakeFrames service;
+  service.refusals = 2;
+  FakeServer server(service);
+  FrameStream stream(server.client(), Options());
+  absl::Status status;
+  EXPECT_EQ(Drain(stream, status), Numbers(0, kFrames - 1));
+  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_EQ(service.streams, 3);
+}
+
+TEST(FrameStream, CancelFromAnotherThreadEndsAWaitingStream) {
+  FakeFrames service;
+  FakeServer server(service);
+  FrameStreamOptions options = Options();
+  options.follow = true;
+  FrameStream stream(server.client(), options);
+  absl::Status status;
+  std::thread canceller;
+  int64_t last = -1;
+  while (true) {
+    auto frame = stream.Next();
+    status = frame.status();
+    if (!frame.ok() || !frame->has_value()) break;
+    last = (*frame)->header.frame;
+    if (last == kFrames - 1) canceller = std::thread([&] { stream.Cancel(); });
+  }
+  canceller.join();
+  EXPECT_EQ(last, kFrames - 1);
+  EXPECT_TRUE(absl::IsCancelled(status)) << status;
+}
+
+}  // namespace
+}  // namespace cleave
