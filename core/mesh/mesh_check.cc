@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "core/mesh/coincident_nodes.h"
+#include "core/mesh/faces.h"
 #include "core/mesh/mesh_limits.h"
 #include "core/mesh/tet_geometry.h"
 
@@ -105,109 +107,51 @@ bool CheckShape(TetMesh& mesh, int64_t id, Faults& faults, Tally& swapped, Tally
   return true;
 }
 
-// One tet's use of a face, filed under the face's smallest node.
-struct FaceUse {
-  int32_t middle;
-  int32_t largest;
-  int32_t tet;
-  int32_t opposite;  // the tet's node off the face
-  bool even;         // whether the tet's outward order of the face is an even permutation of sorted
-  bool oriented;     // whether that order means anything: the tet has positive volume
+// What may be read of a tet.
+enum class Soundness : uint8_t { kNothing, kIds, kOrientation };
 
-  bool SameFace(const FaceUse& other) const {
-    return middle == other.middle && largest == other.largest;
-  }
-  bool operator<(const FaceUse& other) const {
-    if (middle != other.middle) return middle < other.middle;
-    if (largest != other.largest) return largest < other.largest;
-    return tet < other.tet;
-  }
-};
-
-std::string FaceName(int32_t smallest, const FaceUse& use) {
-  return absl::StrCat("(", smallest, ", ", use.middle, ", ", use.largest, ")");
+std::string FaceName(const FaceUse& use) {
+  return absl::StrCat("(", use.nodes[0], ", ", use.nodes[1], ", ", use.nodes[2], ")");
 }
 
 // Judges the uses of one face.
-void CheckFace(int32_t smallest, const FaceUse* begin, const FaceUse* end, Faults& faults) {
-  // Equal tets meet in four faces; they are told at that of their three smallest nodes.
+void CheckFace(const TetMesh& mesh, const std::vector<Soundness>& soundness,
+               std::span<const FaceUse> uses, Faults& faults) {
+  const auto opposite = [&](const FaceUse& use) {
+    return mesh.tets[static_cast<size_t>(use.tet)][static_cast<size_t>(use.local)];
+  };
+  // Equal tets meet in four faces; they are told at that of their three smallest nodes. A few
+  // partners are enough to look at: a face of more than two tets is an error anyhow.
+  constexpr size_t kPartners = 8;
   bool duplicate = false;
-  for (const FaceUse* use = begin + 1; use < end; ++use) {
-    for (const FaceUse* earlier = begin; earlier < use && earlier < begin + 8; ++earlier) {
-      if (use->opposite != earlier->opposite) continue;
+  for (size_t use = 1; use < uses.size(); ++use) {
+    for (size_t earlier = 0; earlier < std::min(use, kPartners); ++earlier) {
+      if (opposite(uses[use]) != opposite(uses[earlier])) continue;
       duplicate = true;
-      if (use->opposite > use->largest) {
-        AddError(faults, "tets", use->tet,
-                 [&] { return absl::StrCat("has the same nodes as tets[", earlier->tet, "]"); });
+      if (opposite(uses[use]) > uses[use].nodes[2]) {
+        AddError(faults, "tets", uses[use].tet, [&] {
+          return absl::StrCat("has the same nodes as tets[", uses[earlier].tet, "]");
+        });
       }
       break;
     }
   }
   if (duplicate) return;
-  if (end - begin > 2) {
-    AddError(faults, "tets", begin[2].tet, [&] {
-      return absl::StrCat("its face ", FaceName(smallest, begin[2]), " is shared by ", end - begin,
-                          " tets (", begin[0].tet, ", ", begin[1].tet, ", ", begin[2].tet,
-                          end - begin > 3 ? ", ..." : "", "); at most two can meet in a face");
-    });
-  } else if (end - begin == 2 && begin[0].even == begin[1].even && begin[0].oriented &&
-             begin[1].oriented) {
-    AddError(faults, "tets", begin[1].tet, [&] {
-      return absl::StrCat("overlaps tets[", begin[0].tet, "]: both lie on the same side of face ",
-                          FaceName(smallest, begin[0]));
-    });
-  }
-}
-
-// What may be read of a tet.
-enum class Soundness : uint8_t { kNothing, kIds, kOrientation };
-
-void CheckFaces(const TetMesh& mesh, const std::vector<Soundness>& soundness, Faults& faults) {
-  const auto nodes = static_cast<size_t>(mesh.node_count());
-  const auto smallest_of = [](const Tet& tet, const std::array<int, 3>& face) {
-    return std::min({tet[static_cast<size_t>(face[0])], tet[static_cast<size_t>(face[1])],
-                     tet[static_cast<size_t>(face[2])]});
+  const auto oriented = [&](const FaceUse& use) {
+    return soundness[static_cast<size_t>(use.tet)] == Soundness::kOrientation;
   };
-  // Filing by smallest node first leaves only short runs to sort.
-  std::vector<int32_t> offsets(nodes + 1, 0);
-  for (size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    if (soundness[tet] == Soundness::kNothing) continue;
-    for (const auto& face : kTetFaces)
-      ++offsets[static_cast<size_t>(smallest_of(mesh.tets[tet], face)) + 1];
-  }
-  for (size_t node = 0; node < nodes; ++node) offsets[node + 1] += offsets[node];
-  std::vector<FaceUse> uses(static_cast<size_t>(offsets[nodes]));
-  std::vector<int32_t> next(offsets.begin(), offsets.end() - 1);
-  for (size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    if (soundness[tet] == Soundness::kNothing) continue;
-    for (size_t k = 0; k < 4; ++k) {
-      std::array<int32_t, 3> face;
-      for (size_t i = 0; i < 3; ++i) face[i] = mesh.tets[tet][static_cast<size_t>(kTetFaces[k][i])];
-      bool even = true;
-      const auto order = [&](size_t i, size_t j) {
-        if (face[i] > face[j]) {
-          std::swap(face[i], face[j]);
-          even = !even;
-        }
-      };
-      order(0, 1);
-      order(1, 2);
-      order(0, 1);
-      uses[static_cast<size_t>(next[static_cast<size_t>(face[0])]++)] = {
-          face[1],           face[2], static_cast<int32_t>(tet),
-          mesh.tets[tet][k], even,    soundness[tet] == Soundness::kOrientation};
-    }
-  }
-  for (size_t node = 0; node < nodes; ++node) {
-    FaceUse* const begin = uses.data() + offsets[node];
-    FaceUse* const end = uses.data() + offsets[node + 1];
-    std::sort(begin, end);
-    for (FaceUse* face = begin; face < end;) {
-      FaceUse* after = face + 1;
-      while (after < end && after->SameFace(*face)) ++after;
-      CheckFace(static_cast<int32_t>(node), face, after, faults);
-      face = after;
-    }
+  if (uses.size() > 2) {
+    AddError(faults, "tets", uses[2].tet, [&] {
+      return absl::StrCat("its face ", FaceName(uses[2]), " is shared by ", uses.size(), " tets (",
+                          uses[0].tet, ", ", uses[1].tet, ", ", uses[2].tet,
+                          uses.size() > 3 ? ", ..." : "", "); at most two can meet in a face");
+    });
+  } else if (uses.size() == 2 && uses[0].even == uses[1].even && oriented(uses[0]) &&
+             oriented(uses[1])) {
+    AddError(faults, "tets", uses[1].tet, [&] {
+      return absl::StrCat("overlaps tets[", uses[0].tet, "]: both lie on the same side of face ",
+                          FaceName(uses[0]));
+    });
   }
 }
 
@@ -260,7 +204,9 @@ Faults CheckAndOrientMesh(TetMesh& mesh) {
     soundness[index] =
         CheckShape(mesh, id, faults, swapped, slivers) ? Soundness::kOrientation : Soundness::kIds;
   }
-  CheckFaces(mesh, soundness, faults);
+  ForEachFace(
+      mesh, [&](int64_t tet) { return soundness[static_cast<size_t>(tet)] != Soundness::kNothing; },
+      [&](std::span<const FaceUse> uses) { CheckFace(mesh, soundness, uses, faults); });
   CheckRegions(mesh, faults);
 
   WarnOf(swapped, "tets", "have negative orientation; their last two nodes were swapped", faults);

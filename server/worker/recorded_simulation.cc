@@ -1,0 +1,126 @@
+#include "server/worker/recorded_simulation.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/status.h"
+#include "core/mesh/incidence.h"
+#include "core/stream/frame_decoder.h"
+#include "core/stream/stream_header.h"
+
+namespace cleave {
+
+absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
+    const SessionPaths& paths, SessionInputs inputs, int threads) {
+  CLEAVE_ASSIGN_OR_RETURN(FrameLogWriter log, FrameLogWriter::Open(paths.frames()));
+  CLEAVE_ASSIGN_OR_RETURN(Reports reports, Reports::Open(paths.reports(), log.head()));
+  std::unique_ptr<RecordedSimulation> recorded(
+      new RecordedSimulation(Checkpoints(paths.checkpoints()), std::move(log), std::move(reports)));
+  const Scene& scene = inputs.scene;
+  StreamParameters parameters;
+  parameters.mesh_sha256 = inputs.mesh_sha256;
+  parameters.edge_count = static_cast<uint64_t>(BuildIncidence(inputs.mesh).edge_count());
+  parameters.tet_count = static_cast<uint64_t>(inputs.mesh.tet_count());
+  parameters.tolerance = scene.output.tolerance.value_or(0);
+  parameters.keyframe_interval = static_cast<uint32_t>(scene.output.keyframe_interval);
+  parameters.frames_per_second = scene.timing.frames_per_second;
+  recorded->rest_positions_ = inputs.mesh.rest_positions;
+  CLEAVE_ASSIGN_OR_RETURN(recorded->header_,
+                          MakeStreamHeader(parameters, recorded->rest_positions_));
+  recorded->checkpoint_interval_ = scene.output.checkpoint_interval;
+  CLEAVE_ASSIGN_OR_RETURN(recorded->simulation_,
+                          Simulation::Create(scene, std::move(inputs.mesh), {threads}));
+  return recorded;
+}
+
+absl::Status RecordedSimulation::Begin() {
+  if (head() >= 0) {
+    CLEAVE_RETURN_IF_ERROR(RestoreNewestCheckpoint());
+    return RestoreEncoder();
+  }
+  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, rest_positions_));
+  CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
+  return log_.Append(encoder_->header_bytes(), encoded);
+}
+
+absl::Status RecordedSimulation::RestoreNewestCheckpoint() {
+  CLEAVE_ASSIGN_OR_RETURN(const std::vector<int64_t> frames, checkpoints_.List());
+  for (const int64_t frame : frames) {
+    if (frame > head()) continue;
+    const absl::StatusOr<std::string> state = checkpoints_.Read(frame);
+    // A damaged checkpoint, or one of another build, only costs time: an older one, or rest, will
+    // do.
+    if (!state.ok() || !simulation_->Restore(*state).ok()) continue;
+    newest_checkpoint_ = frame;
+    break;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RecordedSimulation::RestoreEncoder() {
+  const std::vector<IndexRow>& rows = log_.rows();
+  const std::optional<size_t> position = FindFrame(rows, frame());
+  const std::optional<size_t> key =
+      position.has_value() ? FindKeyframe(rows, *position) : std::nullopt;
+  if (!key.has_value()) {
+    return absl::DataLossError(absl::StrCat("the frame log has no key frame before ", frame()));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(FrameDecoder decoder,
+                          FrameDecoder::Create(log_.header_bytes(), rest_positions_));
+  for (size_t i = *key; i <= *position; ++i) {
+    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, log_.ReadFrame(rows[i]));
+    CLEAVE_RETURN_IF_ERROR(decoder.Apply(bytes));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(encoder_,
+                          FrameEncoder::Create(header_, rest_positions_, decoder.state()));
+  if (encoder_->header_bytes() != log_.header_bytes()) {
+    return absl::FailedPreconditionError("the frame log was written for another stream header");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RecordedSimulation::CatchUp(const StopFlag& stop) {
+  CLEAVE_ASSIGN_OR_RETURN(const FrameReport report, simulation_->Advance(stop));
+  CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
+  const std::optional<size_t> position = FindFrame(log_.rows(), frame());
+  if (!position.has_value()) {
+    return absl::InternalError(absl::StrCat("frame ", frame(), " was never committed"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const std::string committed, log_.ReadFrame(log_.rows()[*position]));
+  if (encoded.bytes != committed) {
+    return absl::DataLossError(absl::StrCat("frame ", frame(),
+                                            " does not come out as it was committed: another "
+                                            "build, or a damaged directory"));
+  }
+  if (frame() > reports_.last_frame()) {
+    CLEAVE_RETURN_IF_ERROR(reports_.Append(frame(), ReportLine(report)));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<FrameReport> RecordedSimulation::Advance(const StopFlag& stop) {
+  return simulation_->Advance(stop);
+}
+
+absl::Status RecordedSimulation::Commit(const FrameReport& report) {
+  CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
+  // The report first: opening cuts reports that lead the log, and never misses one.
+  CLEAVE_RETURN_IF_ERROR(reports_.Append(report.frame, ReportLine(report)));
+  CLEAVE_RETURN_IF_ERROR(log_.Append(encoder_->header_bytes(), encoded));
+  return head() % checkpoint_interval_ == 0 ? Checkpoint() : absl::OkStatus();
+}
+
+absl::Status RecordedSimulation::Checkpoint() {
+  // Rest is where a session without checkpoints starts.
+  if (frame() == 0 || frame() == newest_checkpoint_) return absl::OkStatus();
+  CLEAVE_RETURN_IF_ERROR(checkpoints_.Write(frame(), simulation_->Save()));
+  newest_checkpoint_ = frame();
+  return absl::OkStatus();
+}
+
+Frame RecordedSimulation::CurrentFrame() const {
+  return {simulation_->frame(), simulation_->time(), simulation_->fragments(),
+          simulation_->positions(), simulation_->broken_edges()};
+}
+
+}  // namespace cleave

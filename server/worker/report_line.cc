@@ -1,0 +1,60 @@
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/worker/recorded_simulation.h"
+
+namespace cleave {
+namespace {
+
+// JSON has no infinities.
+std::string Number(double value) {
+  return std::isfinite(value) ? absl::StrFormat("%.17g", value) : "null";
+}
+
+}  // namespace
+
+v1::Progress ProgressOf(const FrameReport& report) {
+  v1::Progress progress;
+  progress.set_time(report.time);
+  progress.set_broken_edges(report.broken_edges);
+  progress.set_fragments(report.fragments);
+  progress.set_seconds_per_frame(report.total_seconds);
+  return progress;
+}
+
+std::string ReportLine(const FrameReport& report) {
+  std::string line = absl::StrCat("{\"frame\":", report.frame);
+  const auto add = [&line](absl::string_view name, const std::string& value) {
+    absl::StrAppend(&line, ",\"", name, "\":", value);
+  };
+  add("time", Number(report.time));
+  add("steps", absl::StrCat(report.steps));
+  add("step_halvings", absl::StrCat(report.step_halvings));
+  add("newton_iterations", absl::StrCat(report.newton_iterations));
+  add("linear_iterations", absl::StrCat(report.linear_iterations));
+  add("break_passes", absl::StrCat(report.break_passes));
+  add("residual", Number(report.residual));
+  add("kinetic_energy", Number(report.kinetic_energy));
+  add("elastic_energy", Number(report.elastic_energy));
+  add("external_work", Number(report.external_work));
+  add("fracture_energy", Number(report.fracture_energy));
+  add("broken_edges", absl::StrCat(report.broken_edges));
+  add("new_broken_edges", absl::StrCat(report.new_broken_edges));
+  add("fragments", absl::StrCat(report.fragments));
+  std::string forces;
+  for (const Vec3& force : report.motion_forces) {
+    absl::StrAppend(&forces, forces.empty() ? "" : ",", "[", Number(force[0]), ",",
+                    Number(force[1]), ",", Number(force[2]), "]");
+  }
+  add("motion_forces", absl::StrCat("[", forces, "]"));
+  add("assembly_seconds", Number(report.assembly_seconds));
+  add("linear_solve_seconds", Number(report.linear_solve_seconds));
+  add("fracture_seconds", Number(report.fracture_seconds));
+  add("total_seconds", Number(report.total_seconds));
+  line += '}';
+  return line;
+}
+
+}  // namespace cleave
