@@ -108,6 +108,10 @@ absl::StatusOr<std::string> StreamFileReader::ReadFrame(size_t position) const {
 }
 
 absl::Status StreamFileReader::Seek(size_t position, FrameDecoder& decoder) const {
+  if (position >= rows_.size()) {
+    return absl::OutOfRangeError(
+        absl::StrCat("frame at position ", position, " of ", rows_.size()));
+  }
   const std::optional<size_t> key = FindKeyframe(rows_, position);
   if (!key.has_value()) {
     return absl::DataLossError(

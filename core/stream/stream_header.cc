@@ -116,9 +116,10 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
   }
   if (header.tolerance == 0) header.tolerance = diagonal > 0 ? 1e-4 * diagonal : 1e-4;
   const double farthest = Farthest(header);
-  if (farthest <= header.tolerance * 0x1p20) {
-    header.domain_bound = header.tolerance * 0x1p20;
-  } else if (farthest <= header.tolerance * 0x1p21) {
+  const double affordable = header.tolerance * 0x1p20;
+  if (farthest <= affordable) {
+    header.domain_bound = std::min(affordable, std::max(32 * farthest, header.tolerance * 0x1p10));
+  } else if (farthest <= 2 * affordable) {
     header.domain_bound = 2 * farthest;
   }
   CheckValues(header, faults);

@@ -39,7 +39,7 @@ struct StreamHeader {
   uint32_t chunk_nodes = 16384;     // nodes in every positions section but the last, [1, 65536]
   uint32_t keyframe_interval = 24;  // frames
   double tolerance = 0;             // m, largest error of a coordinate
-  double domain_bound = 0;          // m, see StreamParameters
+  double domain_bound = 0;          // m, see MakeStreamHeader
   double frames_per_second = 24;
   Vec3 bbox_min{};  // m, of the rest positions
   Vec3 bbox_max{};  // m
@@ -62,8 +62,9 @@ struct StreamParameters {
 
 // Fills a header for a body with these rest positions (m), choosing the origin (centre of the
 // bounding box) and the domain bound: |decoded - x| <= tolerance always holds for the decoder's
-// doubles, and where |x| <= domain_bound also after they are rounded to float32. The bound is
-// tolerance * 2^20 where that holds the body, else twice the body's farthest coordinate, else 0
+// doubles, and where |x| <= domain_bound also after they are rounded to float32. The bound is 32
+// times the body's farthest coordinate, or as much of that as costs the grid at most a sixteenth of
+// its step; where even the body itself costs an eighth or more, it is 0 and nothing is promised
 // (the tolerance is finer than float32 there). Errors: InvalidArgument that names every field at
 // fault; the tolerance must be in [1e-15, 1e9] m and at least 2^-30 of the farthest coordinate.
 absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters,
