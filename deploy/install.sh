@@ -7,6 +7,7 @@ packages=(
   libgrpc++-dev protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev libeigen3-dev libtbb-dev libzstd-dev libssl-dev libxxhash-dev
   libgtest-dev libgmock-dev python3                  # tests
+  python3-numpy python3-zstandard                  # the Python stream decoder
 )
 
 missing=()

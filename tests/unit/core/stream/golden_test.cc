@@ -1,0 +1,67 @@
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/base/sha256.h"
+#include "core/stream/frame_decoder.h"
+#include "core/stream/stream_file.h"
+#include "gtest/gtest.h"
+#include "tests/unit/core/stream/golden_scene.h"
+#include "tests/unit/core/stream/stream_fixture.h"
+
+namespace cleave {
+namespace {
+
+using namespace stream_test;
+
+std::string Load(const std::string& name) {
+  std::ifstream file(kGoldenDirectory + name, std::ios::binary);
+  EXPECT_TRUE(file.good()) << name;
+  return std::string(std::istreambuf_iterator<char>(file), {});
+}
+
+std::vector<Vec3> Positions(const std::string& raw) {
+  std::vector<Vec3> positions(raw.size() / sizeof(Vec3));
+  std::memcpy(positions.data(), raw.data(), raw.size());
+  return positions;
+}
+
+TEST(GoldenStream, DecodesAsItDidWhenItWasWritten) {
+  const std::string bytes = Load("temporal_zstd.clv");
+  const std::string expected = Load("temporal_zstd.expected");
+  const std::vector<Vec3> rest = Positions(Load("temporal_zstd.rest"));
+  const BufferAccess file(bytes);
+  const auto reader = StreamFileReader::Open(file);
+  ASSERT_TRUE(reader.ok()) << reader.status();
+  EXPECT_TRUE(reader->has_footer());
+  ASSERT_EQ(reader->rows().size(), static_cast<size_t>(kGoldenFrames));
+  FrameDecoder decoder = MakeDecoder(reader->header_bytes(), rest);
+
+  std::string kinds;
+  std::string decoded;
+  const size_t frame_bytes = rest.size() * sizeof(Vec3);
+  for (size_t at = 0; at < reader->rows().size(); ++at) {
+    const auto frame_data = reader->ReadFrame(at);
+    ASSERT_TRUE(frame_data.ok()) << frame_data.status();
+    const absl::Status applied = decoder.Apply(*frame_data);
+    ASSERT_TRUE(applied.ok()) << applied;
+    kinds += "?KDH"[static_cast<int>(reader->rows()[at].kind)];
+    Frame original;
+    original.positions = Positions(expected.substr(at * frame_bytes, frame_bytes));
+    const double tolerance = at == 12 ? kGoldenFinerTolerance : kGoldenTolerance;
+    EXPECT_LE(WorstErrors(original, decoder.frame()).as_double, tolerance) << at;
+    EXPECT_LE(WorstErrors(original, decoder.frame()).as_float, tolerance) << at;
+    decoded.append(reinterpret_cast<const char*>(decoder.frame().positions.data()), frame_bytes);
+  }
+  EXPECT_EQ(kinds, "KDDHDKDDDDKDK");
+  EXPECT_EQ(decoder.epoch(), 1u);
+  EXPECT_EQ(decoder.frame().broken_edges.size(), 150u);
+  EXPECT_EQ(Sha256::Of(decoded), Load("temporal_zstd.decoded_sha256"));
+}
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,103 @@
+"""The Python decoder against the golden stream and against damage."""
+
+import hashlib
+import os
+import pathlib
+import struct
+import unittest
+
+import numpy as np
+
+from cleave import checksums, stream
+
+GOLDEN = pathlib.Path(__file__).resolve().parent / "golden"
+TOLERANCES = [1e-3] * 12 + [1e-4]  # m, by frame
+
+
+class GoldenStreamTest(unittest.TestCase):
+    def setUp(self):
+        self.data = (GOLDEN / "temporal_zstd.clv").read_bytes()
+        self.file = stream.StreamFile(self.data)
+        self.rest = np.frombuffer((GOLDEN / "temporal_zstd.rest").read_bytes()).reshape(-1, 3)
+        self.decoder = stream.FrameDecoder(self.file.header_bytes, self.rest)
+
+    def test_every_frame_decodes_to_the_same_bits_as_in_cpp(self):
+        expected = np.frombuffer((GOLDEN / "temporal_zstd.expected").read_bytes())
+        expected = expected.reshape(len(TOLERANCES), -1, 3)
+        digest = hashlib.sha256()
+        self.assertTrue(self.file.has_footer)
+        for row, positions, tolerance in zip(self.file.rows, expected, TOLERANCES):
+            self.decoder.apply(self.file.frame_bytes(row))
+            self.assertEqual(self.decoder.state_hash, row.state_hash)
+            self.assertEqual(len(self.decoder.broken_edges), row.broken_edges)
+            for decoded in (self.decoder.positions, self.decoder.positions.astype("f4")):
+                self.assertLessEqual(np.abs(decoded - positions).max(), tolerance)
+            digest.update(self.decoder.positions.astype("<f8").tobytes())
+        self.assertEqual(
+            digest.digest(), (GOLDEN / "temporal_zstd.decoded_sha256").read_bytes()
+        )
+
+    def test_seeking_equals_decoding_straight(self):
+        for position in (7, 3, 12, 0, 11):
+            self.file.seek(position, self.decoder)
+            self.assertEqual(self.decoder.state_hash, self.file.rows[position].state_hash)
+
+    def test_a_file_without_its_footer_is_walked(self):
+        end = self.file.rows[-1].offset
+        torn = stream.StreamFile(self.data[: end + 100])
+        self.assertFalse(torn.has_footer)
+        self.assertEqual(torn.rows, self.file.rows[:-1])
+
+    def test_every_damaged_byte_is_refused_and_changes_nothing(self):
+        good = self.file.frame_bytes(self.file.rows[1])
+        self.file.seek(0, self.decoder)
+        before = self.decoder.positions
+        for at in range(len(good)):
+            with self.assertRaises(stream.StreamError):
+                self.decoder.apply(good[:at])
+            with self.assertRaises(stream.StreamError):
+                self.decoder.apply(good[:at] + bytes([good[at] ^ 0x20]) + good[at + 1 :])
+        self.assertIs(self.decoder.positions, before)
+        self.decoder.apply(good)
+
+    def test_forgeries_with_right_checksums_are_refused(self):
+        position = 6
+        good = self.file.frame_bytes(self.file.rows[position])
+        self.file.seek(position - 1, self.decoder)
+        header, sections = stream.split_frame(good)
+        at = 88
+        for section in sections:
+            for offset in range(at, at + 24 + len(section.coded)):
+                if at + 20 <= offset < at + 24:
+                    continue
+                forged = bytearray(good)
+                forged[offset] ^= 0x81
+                covered = forged[at : at + 20] + forged[at + 24 : at + 24 + len(section.coded)]
+                struct.pack_into("<I", forged, at + 20, checksums.crc32c(bytes(covered)))
+                with self.assertRaises(stream.StreamError):
+                    self.decoder.apply(bytes(forged))
+            at += 24 + len(section.coded)
+        self.assertEqual(self.decoder.apply(good), header)
+
+    def test_frames_in_a_wrong_place_and_other_meshes_are_refused(self):
+        with self.assertRaises(stream.WrongStateError):
+            self.decoder.apply(self.file.frame_bytes(self.file.rows[1]))
+        with self.assertRaises(stream.WrongStateError):
+            stream.FrameDecoder(self.file.header_bytes, self.rest + 1e-12)
+
+
+class ChecksumsTest(unittest.TestCase):
+    def test_crc32c_is_castagnoli_for_every_way_through(self):
+        self.assertEqual(checksums.crc32c(b"123456789"), 0xE3069283)
+        data = os.urandom(5000)
+        for size in (0, 1, 63, 255, 256, 257, 319, 320, 5000):
+            register = 0xFFFFFFFF
+            for byte in data[:size]:
+                register ^= byte
+                for _ in range(8):
+                    register = (register >> 1) ^ (0x82F63B78 if register & 1 else 0)
+            self.assertEqual(checksums.crc32c(data[:size]), register ^ 0xFFFFFFFF)
+
+
+if __name__ == "__main__":
+    unittest.main()
