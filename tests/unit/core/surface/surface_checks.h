@@ -1,0 +1,87 @@
+#ifndef CLEAVE_TESTS_UNIT_CORE_SURFACE_SURFACE_CHECKS_H_
+#define CLEAVE_TESTS_UNIT_CORE_SURFACE_SURFACE_CHECKS_H_
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "core/base/counter_rng.h"
+#include "core/surface/extract_surface.h"
+
+namespace cleave {
+
+// A mesh with everything that extraction needs beside it.
+struct SurfaceCase {
+  explicit SurfaceCase(TetMesh tets)
+      : mesh(std::move(tets)), incidence(BuildIncidence(mesh)), faces(BuildFaces(mesh)) {}
+  SurfaceTopology Extract(const std::vector<int32_t>& broken, bool smooth = false) const {
+    return ExtractSurface(mesh, incidence, faces, broken, {.smooth = smooth});
+  }
+  // Breaks each edge with the given probability.
+  std::vector<int32_t> RandomEdges(uint64_t seed, double share) const {
+    std::vector<int32_t> edges;
+    for (int32_t edge = 0; edge < static_cast<int32_t>(incidence.edge_count()); ++edge) {
+      if (UniformDraw(seed, RandomStream::kEdgeDraw, static_cast<uint64_t>(edge), 0) < share)
+        edges.push_back(edge);
+    }
+    return edges;
+  }
+
+  TetMesh mesh;
+  Incidence incidence;
+  Faces faces;
+};
+
+inline std::vector<Vec3> RestPoints(const SurfaceTopology& surface) {
+  std::vector<Vec3> points;
+  for (const SurfacePoint& point : surface.points) points.push_back(point.rest);
+  return points;
+}
+
+// The volume inside each fragment's triangles, m^3.
+inline std::vector<double> EnclosedVolumes(const SurfaceTopology& surface,
+                                           const std::vector<Vec3>& points) {
+  std::vector<double> volumes(static_cast<size_t>(surface.fragment_count), 0.0);
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    const auto& [pa, pb, pc] = surface.triangles[i];
+    const Vec3& a = points[static_cast<size_t>(pa)];
+    const Vec3& b = points[static_cast<size_t>(pb)];
+    const Vec3& c = points[static_cast<size_t>(pc)];
+    volumes[static_cast<size_t>(surface.fragments[i])] +=
+        (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0])) /
+        6;
+  }
+  return volumes;
+}
+
+// Every directed edge lies in one triangle and its reverse in another; fragments share no points;
+// every point is in use; arrays fit.
+inline void ExpectClosedOrientedPieces(const SurfaceTopology& surface) {
+  ASSERT_EQ(surface.fragments.size(), surface.triangles.size());
+  ASSERT_EQ(surface.tets.size(), surface.triangles.size());
+  ASSERT_EQ(surface.inside.size(), surface.triangles.size());
+  std::map<std::pair<int32_t, int32_t>, int> uses;
+  std::vector<int32_t> fragment_of(surface.points.size(), -1);
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      const int32_t a = surface.triangles[i][k];
+      const int32_t b = surface.triangles[i][(k + 1) % 3];
+      ASSERT_GE(a, 0);
+      ASSERT_LT(static_cast<size_t>(a), surface.points.size());
+      ASSERT_EQ(++uses[std::pair(a, b)], 1) << "edge " << a << " " << b << " is used twice";
+      int32_t& fragment = fragment_of[static_cast<size_t>(a)];
+      ASSERT_TRUE(fragment == -1 || fragment == surface.fragments[i]) << "a shared point " << a;
+      fragment = surface.fragments[i];
+    }
+  }
+  for (const auto& [edge, count] : uses)
+    ASSERT_TRUE(uses.contains({edge.second, edge.first})) << edge.first << " " << edge.second;
+  for (size_t point = 0; point < fragment_of.size(); ++point)
+    ASSERT_NE(fragment_of[point], -1) << "point " << point << " is in no triangle";
+}
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_UNIT_CORE_SURFACE_SURFACE_CHECKS_H_
