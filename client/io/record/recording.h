@@ -1,0 +1,31 @@
+#ifndef CLEAVE_CLIENT_IO_RECORD_RECORDING_H_
+#define CLEAVE_CLIENT_IO_RECORD_RECORDING_H_
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/io/series/frame_source.h"
+#include "core/base/vec3.h"
+#include "core/stream/frame_log.h"
+#include "core/stream/stream_header.h"
+
+namespace cleave {
+
+// A recorded stream as exporters and pictures take it.
+struct Recording {
+  StreamHeader header;
+  std::vector<IndexRow> rows;  // of the frames in `frames`, by ascending frame number
+  FrameSource frames;          // keeps the file open for as long as it is held
+};
+
+// Opens a .clv whose mesh rests at `rest_positions` (m). Where a session was rewound, a frame is
+// given as it was last. Errors: those of FileAccess, StreamFileReader and FrameDecoder::Create.
+absl::StatusOr<Recording> OpenRecording(const std::string& path,
+                                        std::span<const Vec3> rest_positions);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_RECORD_RECORDING_H_
