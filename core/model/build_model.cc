@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+#include <limits>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "core/damage/edge_thresholds.h"
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
 #include "core/model/elastic_term.h"
@@ -38,6 +41,27 @@ double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
     sum += std::sqrt(Dot(edge, edge));
   }
   return sum / static_cast<double>(incidence.edges.size());
+}
+
+// The client's ids of the solver's edges: ranks by the client's node ids.
+std::vector<int32_t> ClientEdges(const Incidence& incidence, const MeshOrder& order) {
+  struct Entry {
+    int32_t small, large, edge;
+    auto operator<=>(const Entry&) const = default;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(incidence.edges.size());
+  for (const auto& [a, b] : incidence.edges) {
+    const int32_t old_a = order.old_node[static_cast<size_t>(a)];
+    const int32_t old_b = order.old_node[static_cast<size_t>(b)];
+    entries.push_back(
+        {std::min(old_a, old_b), std::max(old_a, old_b), static_cast<int32_t>(entries.size())});
+  }
+  std::sort(entries.begin(), entries.end());
+  std::vector<int32_t> client(entries.size());
+  for (size_t rank = 0; rank < entries.size(); ++rank)
+    client[static_cast<size_t>(entries[rank].edge)] = static_cast<int32_t>(rank);
+  return client;
 }
 
 }  // namespace
@@ -95,6 +119,28 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     part.axis = ToDouble4(motion.rotation_axis);
     part.axis /= std::sqrt(Dot(part.axis, part.axis));
     model.motions.push_back(std::move(part));
+  }
+
+  // Fracture, where a material can break.
+  const bool breaks =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) { return material.tensile_strength.has_value(); });
+  if (breaks) {
+    FracturePart& part = model.fracture.emplace();
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    if (scene.materials.size() == 1) {
+      part.edge_thresholds = {*scene.materials[0].tensile_strength};
+    } else {
+      std::vector<double> strengths(material_of.size());
+      for (size_t tet = 0; tet < strengths.size(); ++tet) {
+        const Material& material = scene.materials[static_cast<size_t>(material_of[tet])];
+        strengths[tet] = material.tensile_strength.value_or(kNever);
+      }
+      part.edge_thresholds = EdgeThresholds(*model.incidence, strengths);
+    }
+    part.settings.simultaneity = scene.fracture.simultaneity;
+    part.max_passes = scene.fracture.max_passes;
+    part.client_edge = ClientEdges(*model.incidence, model.order);
   }
 
   return model;

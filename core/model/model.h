@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/vec3.h"
+#include "core/damage/fracture.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/reorder.h"
 #include "core/mesh/tet_mesh.h"
@@ -15,6 +16,14 @@
 #include "core/scene/scene.h"
 
 namespace cleave {
+
+// What a body that can break has besides.
+struct FracturePart {
+  std::vector<double> edge_thresholds;  // Pa, an edge each, or one for all
+  FractureSettings settings;
+  int32_t max_passes = 60;           // of breaking and solving again, in a step
+  std::vector<int32_t> client_edge;  // the client's id of every edge
+};
 
 // What a scene becomes: just the parts that it asks for. Ids in it are the solver's, nodes and tets
 // in an order that is good for memory; `order` leads back. Does not change but for damage factors
@@ -29,6 +38,7 @@ struct Model {
   std::vector<std::unique_ptr<TetTerm>> tet_terms;
   std::optional<Vec3> gravity;  // m/s^2
   std::vector<PrescribedMotion> motions;
+  std::optional<FracturePart> fracture;
   Quality quality;
 
   int64_t node_count() const { return mesh->node_count(); }

@@ -36,24 +36,41 @@ class BodySimulation final : public Simulation {
         positions_(mesh.rest_positions) {
     std::vector<int32_t> labels;
     const std::vector<uint8_t> broken(static_cast<size_t>(model_.incidence->edge_count()), 0);
-    pieces_ = LabelComponents(*model_.incidence, broken, labels);
+    fragments_ = LabelComponents(*model_.incidence, broken, labels);
     PublishPositions();
   }
 
   absl::StatusOr<FrameReport> Advance(const StopFlag& stop) override {
     const Stopwatch watch;
     const State before = state_;
+    std::string broken_before;
+    if (Breaking* breaking = stepper_.breaking()) {
+      ByteWriter out(broken_before);
+      breaking->Save(out);
+    }
     StepReport steps;
     const absl::Status status = arena_.execute([&] { return RunFrame(stop, steps); });
     if (!status.ok()) {
       state_ = before;
+      if (Breaking* breaking = stepper_.breaking()) {
+        ByteReader in(broken_before);
+        CLEAVE_RETURN_IF_ERROR(breaking->Restore(in));
+      }
       return status;
     }
     ++frame_;
     external_work_ += steps.external_work;
+    fracture_energy_ += steps.fracture_energy;
     PublishPositions();
 
     FrameReport report;
+    report.new_broken_edges = -static_cast<int64_t>(broken_edges_.size());
+    PublishBroken();
+    report.broken_edges = static_cast<int64_t>(broken_edges_.size());
+    report.new_broken_edges += report.broken_edges;
+    report.break_passes = steps.break_passes;
+    report.fracture_energy = fracture_energy_;
+    report.fracture_seconds = steps.fracture_seconds;
     report.frame = frame_;
     report.time = time();
     report.steps = steps.steps;
@@ -64,7 +81,7 @@ class BodySimulation final : public Simulation {
     report.kinetic_energy = KineticEnergy(model_, state_);
     report.elastic_energy = stepper_.solver().elastic_energy();
     report.external_work = external_work_;
-    report.fragments = pieces_;
+    report.fragments = fragments_;
     report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
     report.assembly_seconds = steps.assembly_seconds;
     report.linear_solve_seconds = steps.linear_solve_seconds;
@@ -75,7 +92,7 @@ class BodySimulation final : public Simulation {
   int64_t frame() const override { return frame_; }
   double time() const override { return TimeOf(frame_, 0); }
   const std::vector<Vec3>& positions() const override { return positions_; }
-  int64_t fragments() const override { return pieces_; }
+  int64_t fragments() const override { return fragments_; }
   const std::vector<int32_t>& broken_edges() const override { return broken_edges_; }
 
   std::string Save() const override {
@@ -88,6 +105,14 @@ class BodySimulation final : public Simulation {
     out.Put(external_work_);
     out.PutVector(state_.displacements);
     out.PutVector(state_.velocities);
+    if (const Breaking* breaking = stepper_.breaking()) {
+      out.Put(fracture_energy_);
+      std::string broken;
+      ByteWriter part(broken);
+      breaking->Save(part);
+      out.Put<uint64_t>(broken.size());
+      out.PutBytes(broken);
+    }
     out.Put(Crc32c(saved));
     return saved;
   }
@@ -111,14 +136,27 @@ class BodySimulation final : public Simulation {
     State state;
     state.displacements = in.GetVector<Double4>();
     state.velocities = in.GetVector<Double4>();
+    double fracture_energy = 0;
+    absl::string_view broken;
+    Breaking* const breaking = stepper_.breaking();
+    if (breaking != nullptr) {
+      fracture_energy = in.Get<double>();
+      broken = in.GetBytes(in.Get<uint64_t>());
+    }
     CLEAVE_RETURN_IF_ERROR(in.Finish("the saved state"));
     if (frame < 0 || state.displacements.size() != state_.displacements.size() ||
         state.velocities.size() != state_.velocities.size())
       return absl::DataLossError("the saved state contradicts itself");
+    if (breaking != nullptr) {
+      ByteReader part(broken);
+      CLEAVE_RETURN_IF_ERROR(breaking->Restore(part));
+    }
     frame_ = frame;
     external_work_ = external_work;
+    fracture_energy_ = fracture_energy;
     state_ = std::move(state);
     PublishPositions();
+    PublishBroken();
     return absl::OkStatus();
   }
 
@@ -147,6 +185,13 @@ class BodySimulation final : public Simulation {
     }
   }
 
+  void PublishBroken() {
+    if (Breaking* breaking = stepper_.breaking()) {
+      broken_edges_ = breaking->ClientBrokenEdges();
+      fragments_ = breaking->ComponentCount();
+    }
+  }
+
   const Timing timing_;
   const uint64_t digest_;
   const Model model_;
@@ -154,8 +199,9 @@ class BodySimulation final : public Simulation {
   Stepper stepper_;
   State state_;
   int64_t frame_ = 0;
-  double external_work_ = 0;  // J
-  int64_t pieces_ = 0;
+  double external_work_ = 0;    // J
+  double fracture_energy_ = 0;  // J
+  int64_t fragments_ = 0;
   std::vector<Vec3> positions_;
   std::vector<int32_t> broken_edges_;
 };

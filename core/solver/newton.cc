@@ -104,6 +104,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
   {
     ScopedTimer timer(report.assembly_seconds);
     Evaluate(start, dt, displacements);
+    initial_elastic_energy_ = elastic_energy_;
   }
   double last_step = std::numeric_limits<double>::infinity();
   for (int32_t iteration = 0;; ++iteration) {

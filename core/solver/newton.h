@@ -40,6 +40,8 @@ class NewtonSolver {
   // outside, besides gravity, to move as it does: 0 up to the residual at free coordinates.
   const NodalVector& outer_forces() const { return gradient_; }
   double elastic_energy() const { return elastic_energy_; }
+  // J, where that Solve started.
+  double initial_elastic_energy() const { return initial_elastic_energy_; }
 
   const std::vector<FixedNode>& fixed_nodes() const { return fixed_nodes_; }
   int64_t bytes() const;
@@ -65,8 +67,9 @@ class NewtonSolver {
   double energy_ = 0;            // J
   double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
   double elastic_energy_ = 0;    // J
-  double residual_norm_ = 0;     // N
-  double force_scale_ = 0;       // N, what the residual is held against
+  double initial_elastic_energy_ = 0;
+  double residual_norm_ = 0;  // N
+  double force_scale_ = 0;    // N, what the residual is held against
 };
 
 }  // namespace cleave

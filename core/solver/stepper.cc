@@ -1,11 +1,14 @@
 #include "core/solver/stepper.h"
 
 #include "core/base/status.h"
+#include "core/base/stopwatch.h"
 
 namespace cleave {
 
 Stepper::Stepper(const Model& model)
-    : model_(model), newton_(model), displacements_(model.masses.size()) {}
+    : model_(model), newton_(model), displacements_(model.masses.size()) {
+  if (model.fracture) breaking_.emplace(model);
+}
 
 absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State& state,
                            StepReport& report) {
@@ -24,6 +27,7 @@ absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State
     }
     if (!absl::IsAborted(status) || part.halvings == model_.quality.max_step_halvings)
       return status;
+    if (breaking_) CLEAVE_RETURN_IF_ERROR(breaking_->RollBack());
     ++report.step_halvings;
     const double middle = 0.5 * (part.start + part.end);
     parts.back() = {middle, part.end, part.halvings + 1};
@@ -35,17 +39,36 @@ absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State
 absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, State& state,
                                 StepReport& report) {
   const double dt = end - start;
+  if (breaking_) breaking_->Mark();
   // Free nodes go on as they moved; given ones are where they will be.
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, end, displacements_);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
+  double fracture_energy = 0;
+  if (breaking_) CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, report));
 
+  report.fracture_energy += fracture_energy;
   AddWork(state, report);
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
   state.displacements.swap(displacements_);
   ++report.steps;
+  return absl::OkStatus();
+}
+
+absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
+                            double& fracture_energy, StepReport& report) {
+  for (int32_t pass = 0; pass < model_.fracture->max_passes; ++pass) {
+    {
+      ScopedTimer timer(report.fracture_seconds);
+      if (breaking_->BreakPass(displacements_) == 0) return absl::OkStatus();
+    }
+    ++report.break_passes;
+    const double before = newton_.elastic_energy();
+    CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
+    fracture_energy += before - newton_.initial_elastic_energy();
+  }
   return absl::OkStatus();
 }
 

@@ -1,18 +1,22 @@
 #ifndef CLEAVE_CORE_SOLVER_STEPPER_H_
 #define CLEAVE_CORE_SOLVER_STEPPER_H_
 
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "core/base/stop_flag.h"
 #include "core/model/model.h"
+#include "core/solver/breaking.h"
 #include "core/solver/newton.h"
 #include "core/solver/step_report.h"
 
 namespace cleave {
 
-// Moves a body through time by backward Euler. Not thread-safe; loops run on the caller's TBB arena
-// and give the same bits for any number of threads.
+// Moves a body through time by backward Euler. Where it can break, a step alternates solving and
+// breaking: each solve starts over from the beginning of the step with the damage so far, and the
+// velocities follow when no edge fails any more. Source: method note, section 7. Not thread-safe;
+// loops run on the caller's TBB arena and give the same bits for any number of threads.
 class Stepper {
  public:
   // `model` must outlive the stepper.
@@ -27,15 +31,22 @@ class Stepper {
 
   // Of the last step that succeeded.
   const NewtonSolver& solver() const { return newton_; }
+  // Null where nothing breaks.
+  Breaking* breaking() { return breaking_ ? &*breaking_ : nullptr; }
+  const Breaking* breaking() const { return breaking_ ? &*breaking_ : nullptr; }
   int64_t bytes() const;
 
  private:
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
+  // Alternates breaking and solving until no edge fails. Adds the elastic energy lost, J.
+  absl::Status Break(double dt, const StopFlag& stop, const State& state, double& fracture_energy,
+                     StepReport& report);
   void AddWork(const State& state, StepReport& report) const;
 
   const Model& model_;
   NewtonSolver newton_;
+  std::optional<Breaking> breaking_;
   NodalVector displacements_;  // m, at the end of the step
 };
 

@@ -1,12 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
-#include "tests/unit/core/simulation/kuhn_mesh.h"
-#include "tests/unit/core/simulation/test_scene.h"
+#include "core/simulation/simulation.h"
+#include "tests/unit/core/solver/kuhn_mesh.h"
+#include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
 namespace {
+
+std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh) {
+  return *Simulation::Create(scene, mesh, Simulation::Options{});
+}
 
 constexpr double kFar = 1e6;
 

@@ -1,12 +1,10 @@
-#ifndef CLEAVE_TESTS_UNIT_CORE_SIMULATION_TEST_SCENE_H_
-#define CLEAVE_TESTS_UNIT_CORE_SIMULATION_TEST_SCENE_H_
+#ifndef CLEAVE_TESTS_UNIT_CORE_SOLVER_TEST_SCENE_H_
+#define CLEAVE_TESTS_UNIT_CORE_SOLVER_TEST_SCENE_H_
 
-#include <memory>
+#include <array>
 #include <string>
-#include <utility>
 
 #include "core/scene/scene.h"
-#include "core/simulation/simulation.h"
 
 namespace cleave {
 
@@ -44,12 +42,6 @@ inline Motion& AddMotion(Scene& scene, const std::string& set,
   return scene.motions.back();
 }
 
-inline std::unique_ptr<Simulation> MustCreate(const Scene& scene, TetMesh mesh, int threads = 1) {
-  Simulation::Options options;
-  options.threads = threads;
-  return *Simulation::Create(scene, std::move(mesh), options);
-}
-
 }  // namespace cleave
 
-#endif  // CLEAVE_TESTS_UNIT_CORE_SIMULATION_TEST_SCENE_H_
+#endif  // CLEAVE_TESTS_UNIT_CORE_SOLVER_TEST_SCENE_H_

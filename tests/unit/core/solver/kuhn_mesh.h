@@ -1,5 +1,5 @@
-#ifndef CLEAVE_TESTS_UNIT_CORE_SIMULATION_KUHN_MESH_H_
-#define CLEAVE_TESTS_UNIT_CORE_SIMULATION_KUHN_MESH_H_
+#ifndef CLEAVE_TESTS_UNIT_CORE_SOLVER_KUHN_MESH_H_
+#define CLEAVE_TESTS_UNIT_CORE_SOLVER_KUHN_MESH_H_
 
 #include <array>
 #include <cstdint>
@@ -49,4 +49,4 @@ inline TetMesh KuhnBox(std::array<int, 3> cells, Vec3 size, Vec3 origin = {0, 0,
 
 }  // namespace cleave
 
-#endif  // CLEAVE_TESTS_UNIT_CORE_SIMULATION_KUHN_MESH_H_
+#endif  // CLEAVE_TESTS_UNIT_CORE_SOLVER_KUHN_MESH_H_

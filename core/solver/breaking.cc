@@ -1,0 +1,92 @@
+#include "core/solver/breaking.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+Broadcast<double> Thresholds(const FracturePart& part) {
+  return part.edge_thresholds.size() == 1 ? Broadcast<double>::Uniform(part.edge_thresholds[0])
+                                          : Broadcast<double>::PerItem(part.edge_thresholds.data());
+}
+
+}  // namespace
+
+Breaking::Breaking(const Model& model)
+    : model_(model),
+      fracture_(*model.mesh, *model.incidence, Thresholds(*model.fracture),
+                model.fracture->settings),
+      positions_(model.masses.size()),
+      stresses_(static_cast<size_t>(model.tet_count())) {
+  Mark();
+}
+
+int64_t Breaking::BreakPass(const NodalVector& displacements) {
+  ParallelFor(model_.node_count(), 4096, [&](int64_t begin, int64_t end) {
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      positions_[node] = ToVec3(ToDouble4(model_.mesh->rest_positions[node]) + displacements[node]);
+    }
+  });
+  ParallelFor(model_.tet_count(), 4096, [&](int64_t begin, int64_t end) {
+    std::fill(stresses_.begin() + begin, stresses_.begin() + end, Eigen::Matrix3d::Zero());
+  });
+  for (const auto& term : model_.tet_terms) term->AddEffectiveStress(displacements, stresses_);
+  const PassResult result = fracture_.BreakPass(positions_, stresses_);
+  for (const ChangedTet& changed : result.changed_tets) {
+    for (const auto& term : model_.tet_terms) {
+      term->SetDamageFactor(changed.tet,
+                            fracture_.damage_factors()[static_cast<size_t>(changed.tet)]);
+    }
+  }
+  return static_cast<int64_t>(result.broken_edges.size());
+}
+
+void Breaking::Mark() {
+  // Edges never mend: as many broken edges as at the last mark are the same edges.
+  if (!mark_.empty() && marked_broken_edges_ == fracture_.broken_edge_count()) return;
+  mark_.clear();
+  ByteWriter out(mark_);
+  fracture_.Save(out);
+  marked_broken_edges_ = fracture_.broken_edge_count();
+}
+
+absl::Status Breaking::RollBack() {
+  if (marked_broken_edges_ == fracture_.broken_edge_count()) return absl::OkStatus();
+  ByteReader in(mark_);
+  CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
+  ApplyDamage();
+  return absl::OkStatus();
+}
+
+absl::Status Breaking::Restore(ByteReader& in) {
+  CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
+  ApplyDamage();
+  mark_.clear();
+  Mark();
+  return absl::OkStatus();
+}
+
+void Breaking::ApplyDamage() {
+  const auto factors = fracture_.damage_factors();
+  for (const auto& term : model_.tet_terms) {
+    for (size_t tet = 0; tet < factors.size(); ++tet)
+      term->SetDamageFactor(static_cast<int64_t>(tet), factors[tet]);
+  }
+}
+
+std::vector<int32_t> Breaking::ClientBrokenEdges() const {
+  std::vector<int32_t> edges = fracture_.BrokenEdges();
+  for (int32_t& edge : edges) edge = model_.fracture->client_edge[static_cast<size_t>(edge)];
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+int64_t Breaking::bytes() const {
+  return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
+                              stresses_.size() * sizeof(Eigen::Matrix3d) + mark_.size());
+}
+
+}  // namespace cleave

@@ -1,0 +1,59 @@
+#ifndef CLEAVE_CORE_SOLVER_BREAKING_H_
+#define CLEAVE_CORE_SOLVER_BREAKING_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "core/base/vec3.h"
+#include "core/damage/fracture.h"
+#include "core/model/model.h"
+#include "core/model/nodal_vector.h"
+
+namespace cleave {
+
+// The breaking of a model's body: hands the stresses of its terms to EdgeFracture, and the damage
+// back to the terms. Not thread-safe; loops run on the caller's TBB arena and give the same bits
+// for any number of threads.
+class Breaking {
+ public:
+  // `model.fracture` must be set; `model` must outlive this object.
+  explicit Breaking(const Model& model);
+
+  // One break pass at these displacements (m); the terms carry the new damage afterwards. Returns
+  // the number of newly broken edges.
+  int64_t BreakPass(const NodalVector& displacements);
+
+  // Keeps the present state, for RollBack to return to.
+  void Mark();
+  absl::Status RollBack();
+
+  // The client's ids, ascending.
+  std::vector<int32_t> ClientBrokenEdges() const;
+  int64_t broken_edge_count() const { return fracture_.broken_edge_count(); }
+  int64_t ComponentCount() { return fracture_.ComponentCount(); }
+  const EdgeFracture& fracture() const { return fracture_; }
+
+  void Save(ByteWriter& out) const { fracture_.Save(out); }
+  // Refuses (DataLoss) what cannot belong to this mesh, and then changes nothing.
+  absl::Status Restore(ByteReader& in);
+
+  int64_t bytes() const;
+
+ private:
+  void ApplyDamage();
+
+  const Model& model_;
+  EdgeFracture fracture_;
+  std::vector<Vec3> positions_;            // m
+  std::vector<Eigen::Matrix3d> stresses_;  // Pa
+  std::string mark_;
+  int64_t marked_broken_edges_ = 0;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SOLVER_BREAKING_H_
