@@ -1,0 +1,89 @@
+#include "core/model/footprint.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/vec3.h"
+#include "core/damage/edge_mask.h"
+#include "core/material/moduli.h"
+#include "core/model/nodal_vector.h"
+#include "core/model/tet_batches.h"
+
+namespace cleave {
+namespace {
+
+constexpr int64_t kInt = sizeof(int32_t);
+constexpr int64_t kDouble = sizeof(double);
+constexpr int64_t kVec3 = sizeof(Vec3);
+constexpr int64_t kNodal = sizeof(Double4);
+
+// Seconds, measured by tests/bench on an EPYC core at 2.6 GHz.
+constexpr double kNewtonSecondsPerTet = 0.7e-6;    // forces, stiffness and preconditioner
+constexpr double kLinearSecondsPerEdge = 9e-9;     // an iteration
+constexpr double kFractureSecondsPerTet = 0.1e-6;  // a pass
+constexpr double kNewtonPerStep = 2.5;
+
+}  // namespace
+
+Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edges) {
+  Footprint footprint;
+  const auto add = [&](const char* name, int64_t bytes) {
+    footprint.parts.push_back({name, bytes});
+    footprint.total_bytes += bytes;
+  };
+
+  // Every scene.
+  const int64_t batches = (tets + kLanes - 1) / kLanes;
+  add("mesh", nodes * kVec3 + tets * 4 * kInt + 2 * (nodes + tets) * kInt);
+  add("incidence", edges * 2 * kInt + tets * 6 * kInt +  // edges, edges of tets
+                       (nodes + 1 + 2 * edges) * kInt +  // edges of nodes
+                       (nodes + 1 + 4 * tets) * kInt +   // tets of nodes
+                       (edges + 1 + 6 * tets) * kInt);   // tets of edges
+  const bool uniform = scene.materials.size() <= 1;
+  add("elasticity",
+      batches * static_cast<int64_t>(sizeof(TetBatch)) +
+          (uniform ? 1 : batches) * static_cast<int64_t>(sizeof(LameConstants<Double4>)));
+  add("state", nodes * (kDouble + 4 * kNodal + kVec3));  // masses, now and before, positions
+  add("stiffness matrix", 18 * (edges + 1) * static_cast<int64_t>(sizeof(float)) +
+                              2 * (nodes + 1) * kInt + 3 * edges * kInt);
+  add("solver", nodes * (12 * kNodal + kDouble));
+
+  // What the scene adds.
+  if (scene.gravity) add("gravity", 0);
+  if (!scene.motions.empty()) {
+    int64_t bytes = nodes * 2 * kNodal;
+    for (const Motion& motion : scene.motions)
+      bytes += nodes * kInt + static_cast<int64_t>(motion.keyframes.size()) *
+                                  static_cast<int64_t>(sizeof(Keyframe));
+    add("motions", bytes);
+  }
+  if (!scene.initial_velocities.empty()) add("initial velocities", 0);
+  const bool breaks =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) { return material.tensile_strength.has_value(); });
+  if (breaks) {
+    add("fracture",
+        (uniform ? 1 : edges) * kDouble + edges * kInt +                         // thresholds, ids
+            tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
+            edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
+            nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses
+  }
+
+  // A linear solve carries a push through the mesh: its iterations grow with the nodes across.
+  const double across = std::cbrt(static_cast<double>(nodes));
+  const double linear_iterations =
+      across * std::max(0.3, -std::log10(scene.quality.linear_tolerance));
+  const double newton_iterations =
+      std::min(kNewtonPerStep, static_cast<double>(scene.quality.newton_iterations));
+  const double step =
+      newton_iterations * (kNewtonSecondsPerTet * static_cast<double>(tets) +
+                           linear_iterations * kLinearSecondsPerEdge * static_cast<double>(edges)) +
+      (breaks ? kFractureSecondsPerTet * static_cast<double>(tets) : 0);
+  footprint.seconds_per_frame = step * scene.timing.steps_per_frame;
+  footprint.total_seconds =
+      footprint.seconds_per_frame * static_cast<double>(scene.timing.frame_count);
+  return footprint;
+}
+
+}  // namespace cleave
