@@ -1,0 +1,57 @@
+#ifndef CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_
+#define CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "client/io/preview/camera.h"
+#include "client/io/preview/image.h"
+#include "client/io/series/shown_surface.h"
+
+struct RTCDeviceTy;
+
+namespace cleave {
+
+enum class ColorBy {
+  kRegion,  // the region's colour outside, a light one inside cracks
+  kPiece,   // a colour a piece, lighter inside cracks
+  kStrain,  // largest principal strain
+};
+
+struct RenderStyle {
+  ColorBy color_by = ColorBy::kRegion;
+  // Palette slots of regions; a region that is not named takes its own id as slot.
+  std::map<int32_t, int32_t> region_slots;
+  double strain_limit = 0.2;  // strain that takes the last colour of the map, > 0
+  int samples = 2;            // rays a pixel along each side, 1 to 8: edges and light get smoother
+};
+
+// Draws surfaces by ray casting on the processor: a soft sun, a sky that corners shut out, a plain
+// ground that takes shadows. No display or GPU is asked for. The same surface, camera and style
+// give the same bytes for any thread count. Not thread-safe; rows are drawn in parallel on the
+// caller's TBB arena.
+class Renderer {
+ public:
+  // Errors: Unavailable where Embree finds no device.
+  static absl::StatusOr<Renderer> Create();
+
+  // A picture of `width` x `height` pixels, each 1 to kMaxImageSide. A surface without triangles
+  // gives the bare ground. Errors: InvalidArgument for a bad surface (CheckShownSurface), size or
+  // style; ColorBy::kStrain needs strains.
+  absl::StatusOr<Image> Render(const ShownSurface& surface, const Camera& camera,
+                               const RenderStyle& style, int width, int height);
+
+ private:
+  struct Release {
+    void operator()(RTCDeviceTy* device) const;
+  };
+  explicit Renderer(RTCDeviceTy* device) : device_(device) {}
+
+  std::unique_ptr<RTCDeviceTy, Release> device_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_

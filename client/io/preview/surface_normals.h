@@ -1,0 +1,20 @@
+#ifndef CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
+#define CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "client/io/series/shown_surface.h"
+
+namespace cleave {
+
+// Normals of the three corners of every triangle, of length 1. A corner takes the area-weighted
+// mean over the triangles round its point that lie on the same side of the crack and bend away by
+// less than the crease angle (40 degrees), so that round bodies look round and cuts stay sharp. A
+// triangle without area has the normal zero.
+std::vector<std::array<Eigen::Vector3f, 3>> CornerNormals(const ShownSurface& surface);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
