@@ -112,11 +112,19 @@ absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
     near_side = std::min(near_side, across.dot(ToEigen(point)));
     far_side = std::max(far_side, across.dot(ToEigen(point)));
   }
-  // A plate is seen from higher up than a column.
+  double left_side = std::numeric_limits<double>::infinity();
+  double right_side = -left_side;
+  for (const Vec3& point : points) {
+    left_side = std::min(left_side, along.dot(ToEigen(point)));
+    right_side = std::max(right_side, along.dot(ToEigen(point)));
+  }
+  // A plate is seen from higher up than a column, a long body more squarely than a compact one.
+  const double slimness = (far_side - near_side) / std::max(right_side - left_side, 1e-12);
   const double flatness =
       std::clamp(1 - (top - ground) / std::max(far_side - near_side, 1e-12), 0.0, 1.0);
   constexpr double kDegree = std::numbers::pi / 180;
-  const double azimuth = options.azimuth.value_or(28) * kDegree;
+  const double azimuth =
+      options.azimuth.value_or(10 + 22 * std::clamp(slimness, 0.0, 1.0)) * kDegree;
   const double elevation = options.elevation.value_or(18 + 22 * flatness) * kDegree;
   const Vector3d level = std::cos(azimuth) * across - std::sin(azimuth) * along;
   const Vector3d forward = std::cos(elevation) * level - std::sin(elevation) * up;

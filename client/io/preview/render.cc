@@ -28,13 +28,13 @@ using Eigen::Vector3f;
 constexpr float kPi = std::numbers::pi_v<float>;
 
 // Unshadowed level ground receives 1: this much from the sun, the rest from the sky.
-constexpr float kSunShare = 0.62f;
+constexpr float kSunShare = 0.66f;
 constexpr float kSunSpread = 0.10f;  // radius of the sun's disc at distance 1: how soft shadows are
 constexpr int kSkyRays = 2;          // a camera ray
 const Vector3f kSkyTint(0.93f, 0.97f, 1.06f);
 const Vector3f kSunTint(1.04f, 1.0f, 0.94f);
-const Vector3f kGroundAlbedo(0.74f, 0.745f, 0.75f);
-const Vector3f kBackdrop(0.86f, 0.865f, 0.87f);  // what the ground fades into far away
+const Vector3f kGroundAlbedo(0.80f, 0.805f, 0.81f);
+const Vector3f kBackdrop(0.88f, 0.89f, 0.90f);  // what the ground fades into far away
 
 Vector3f ToFloat(const Vec3& v) {
   return Vector3f(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
@@ -106,10 +106,10 @@ class Scene {
         offset_(2e-4f * radius_),
         // A hair below what stands on it, so that soles do not fight with it.
         ground_height_(static_cast<float>(camera.ground_height) - 1e-3f * radius_) {
-    // Over the camera's left shoulder, high enough for short shadows.
+    // From the left and a little behind: shadows fall to the right where they show shape.
     const Vector3f level = (forward_ - ground_up_ * ground_up_.dot(forward_)).normalized();
     const Vector3f side = ToFloat(camera.right);
-    sun_ = (1.25f * ground_up_ - 0.62f * side - 0.45f * level).normalized();
+    sun_ = (ground_up_ - 0.75f * side + 0.15f * level).normalized();
     sun_strength_ = kSunShare / std::max(sun_.dot(ground_up_), 0.1f);
     normals_ = CornerNormals(surface);
     BuildColors();

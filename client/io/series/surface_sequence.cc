@@ -1,0 +1,221 @@
+#include "client/io/series/surface_sequence.h"
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/faults.h"
+#include "core/base/parallel.h"
+#include "core/base/status.h"
+#include "core/surface/extract_surface.h"
+
+namespace cleave {
+namespace {
+
+using Eigen::Matrix3f;
+
+// Edge vectors of a tet from its first corner, as columns.
+Eigen::Matrix3d EdgeMatrix(const std::vector<Vec3>& positions, const std::array<int32_t, 4>& tet) {
+  const auto at = [&](size_t k) {
+    return Eigen::Map<const Eigen::Vector3d>(positions[static_cast<size_t>(tet[k])].data());
+  };
+  Eigen::Matrix3d edges;
+  for (size_t k = 1; k < 4; ++k) edges.col(static_cast<Eigen::Index>(k) - 1) = at(k) - at(0);
+  return edges;
+}
+
+}  // namespace
+
+SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& options)
+    : mesh_(mesh),
+      options_(options),
+      incidence_(BuildIncidence(mesh)),
+      faces_(BuildFaces(mesh)),
+      motion_(mesh_, incidence_) {
+  if (!options_.strains) return;
+  rest_inverses_.resize(mesh.tets.size());
+  rest_volumes_.resize(mesh.tets.size());
+  ParallelFor(mesh.tet_count(), 2048, [&](int64_t begin, int64_t end) {
+    for (auto t = static_cast<size_t>(begin); t < static_cast<size_t>(end); ++t) {
+      const Eigen::Matrix3d edges = EdgeMatrix(mesh_.rest_positions, mesh_.tets[t]);
+      const double volume = edges.determinant() / 6;
+      rest_volumes_[t] = static_cast<float>(std::max(volume, 0.0));
+      Eigen::Map<Matrix3f> inverse(rest_inverses_[t].data());
+      if (volume > 0) {
+        inverse = edges.inverse().cast<float>();
+      } else {
+        inverse.setZero();
+      }
+    }
+  });
+}
+
+absl::Status SurfaceSequence::Check(const Frame& frame) const {
+  Faults faults;
+  if (frame.positions.size() != mesh_.rest_positions.size()) {
+    faults.Error("positions", absl::StrCat("frame ", frame.frame, " has ", frame.positions.size(),
+                                           " nodes, the mesh ", mesh_.rest_positions.size()));
+  }
+  for (size_t i = 0; i < frame.positions.size(); ++i) {
+    const Vec3& p = frame.positions[i];
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
+    faults.Error(absl::StrCat("positions[", i, "]"),
+                 absl::StrCat("is not finite in frame ", frame.frame));
+    break;
+  }
+  if (!std::isfinite(frame.time) || (started_ && frame.time < shown_.time)) {
+    faults.Error("time", absl::StrCat(frame.time, " s in frame ", frame.frame, " is before ",
+                                      shown_.time, " s or not finite"));
+  }
+  int64_t last = -1;
+  for (size_t i = 0; i < frame.broken_edges.size(); ++i) {
+    const int32_t edge = frame.broken_edges[i];
+    if (edge <= last || edge >= incidence_.edge_count()) {
+      faults.Error(absl::StrCat("broken_edges[", i, "]"),
+                   absl::StrCat(edge, " is not ascending or not below the mesh's ",
+                                incidence_.edge_count(), " edges in frame ", frame.frame));
+      break;
+    }
+    last = edge;
+  }
+  return faults.ToStatus();
+}
+
+absl::Status SurfaceSequence::Advance(const Frame& frame) {
+  CLEAVE_RETURN_IF_ERROR(Check(frame));
+  const double step = frame.time - shown_.time;
+  const bool taken_apart = !started_ || frame.broken_edges != broken_edges_;
+  if (taken_apart) TakeApart(frame);
+  if (options_.velocities && started_) {
+    if (taken_apart) {
+      motion_.Move(topology_, node_positions_, previous_points_);
+    } else {
+      previous_points_ = shown_.points;
+    }
+  }
+  motion_.Move(topology_, frame.positions, shown_.points);
+  const size_t points = shown_.points.size();
+  if (options_.displacements) {
+    shown_.displacements.resize(points);
+    for (size_t i = 0; i < points; ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        shown_.displacements[i][k] = shown_.points[i][k] - topology_.points[i].rest[k];
+      }
+    }
+  }
+  if (options_.velocities) {
+    shown_.velocities.assign(points, Vec3{0, 0, 0});
+    for (size_t i = 0; started_ && step > 0 && i < points; ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        shown_.velocities[i][k] = (shown_.points[i][k] - previous_points_[i][k]) / step;
+      }
+    }
+  }
+  if (options_.strains) FindStrains(frame.positions);
+  shown_.frame = frame.frame;
+  shown_.time = frame.time;
+  shown_.broken_edges = static_cast<int64_t>(frame.broken_edges.size());
+  node_positions_ = frame.positions;
+  started_ = true;
+  return absl::OkStatus();
+}
+
+void SurfaceSequence::TakeApart(const Frame& frame) {
+  broken_edges_ = frame.broken_edges;
+  topology_ = ExtractSurface(mesh_, incidence_, faces_, broken_edges_, SurfaceOptions{});
+  NamePieces();
+  const size_t triangles = topology_.triangles.size();
+  shown_.triangles = topology_.triangles;
+  shown_.inside = topology_.inside;
+  shown_.pieces.resize(triangles);
+  shown_.regions.resize(triangles);
+  std::vector<int32_t> fragment_pieces(static_cast<size_t>(topology_.fragment_count));
+  for (size_t node = 0; node < node_pieces_.size(); ++node) {
+    const int32_t fragment = topology_.node_fragments[node];
+    if (fragment >= 0) fragment_pieces[static_cast<size_t>(fragment)] = node_pieces_[node];
+  }
+  for (size_t i = 0; i < triangles; ++i) {
+    shown_.pieces[i] = fragment_pieces[static_cast<size_t>(topology_.fragments[i])];
+    shown_.regions[i] = mesh_.region_of(topology_.tets[i]);
+  }
+}
+
+void SurfaceSequence::NamePieces() {
+  const auto fragments = static_cast<size_t>(topology_.fragment_count);
+  std::vector<int32_t> smallest(fragments, -1);
+  std::vector<int32_t> sizes(fragments, 0);
+  for (size_t node = 0; node < topology_.node_fragments.size(); ++node) {
+    const int32_t fragment = topology_.node_fragments[node];
+    if (fragment < 0) continue;
+    if (smallest[static_cast<size_t>(fragment)] < 0) {
+      smallest[static_cast<size_t>(fragment)] = static_cast<int32_t>(node);
+    }
+    ++sizes[static_cast<size_t>(fragment)];
+  }
+  std::vector<size_t> by_size(fragments);
+  for (size_t i = 0; i < fragments; ++i) by_size[i] = i;
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
+  for (const size_t fragment : by_size) {
+    pieces_by_smallest_node_.emplace(smallest[fragment],
+                                     static_cast<int32_t>(pieces_by_smallest_node_.size()));
+  }
+  node_pieces_.resize(topology_.node_fragments.size());
+  for (size_t node = 0; node < node_pieces_.size(); ++node) {
+    const int32_t fragment = topology_.node_fragments[node];
+    node_pieces_[node] =
+        fragment < 0 ? -1 : pieces_by_smallest_node_.at(smallest[static_cast<size_t>(fragment)]);
+  }
+}
+
+std::vector<float> SurfaceSequence::TetStrains(const std::vector<Vec3>& positions) const {
+  std::vector<float> strains(rest_inverses_.size());
+  ParallelFor(static_cast<int64_t>(strains.size()), 2048, [&](int64_t begin, int64_t end) {
+    Eigen::SelfAdjointEigenSolver<Matrix3f> eigen;
+    for (auto t = static_cast<size_t>(begin); t < static_cast<size_t>(end); ++t) {
+      if (rest_volumes_[t] <= 0) continue;
+      const Matrix3f gradient = EdgeMatrix(positions, mesh_.tets[t]).cast<float>() *
+                                Eigen::Map<const Matrix3f>(rest_inverses_[t].data());
+      eigen.computeDirect(gradient.transpose() * gradient, Eigen::EigenvaluesOnly);
+      const float stretch = std::sqrt(std::max(eigen.eigenvalues()[2], 0.0f));
+      strains[t] = std::isfinite(stretch) ? stretch - 1 : 0.0f;
+    }
+  });
+  return strains;
+}
+
+void SurfaceSequence::FindStrains(const std::vector<Vec3>& positions) {
+  const std::vector<float> tet_strains = TetStrains(positions);
+  std::vector<float> node_strains(mesh_.rest_positions.size());
+  ParallelFor(mesh_.node_count(), 2048, [&](int64_t begin, int64_t end) {
+    for (int64_t node = begin; node < end; ++node) {
+      float sum = 0;
+      float volume = 0;
+      for (const int32_t tet : incidence_.node_tets[node]) {
+        const auto t = static_cast<size_t>(tet);
+        if (Separated(topology_.tet_masks[t])) continue;
+        sum += rest_volumes_[t] * tet_strains[t];
+        volume += rest_volumes_[t];
+      }
+      node_strains[static_cast<size_t>(node)] = volume > 0 ? sum / volume : 0.0f;
+    }
+  });
+  shown_.strains.resize(topology_.points.size());
+  for (size_t i = 0; i < topology_.points.size(); ++i) {
+    const SurfacePoint& point = topology_.points[i];
+    float sum = 0;
+    float count = 0;
+    for (size_t k = 0; k < point.node_count; ++k) {
+      if ((point.owners >> k & 1) == 0) continue;
+      sum += node_strains[static_cast<size_t>(point.nodes[k])];
+      count += 1;
+    }
+    shown_.strains[i] = count > 0 ? sum / count : 0.0f;
+  }
+}
+
+}  // namespace cleave

@@ -1,0 +1,79 @@
+#ifndef CLEAVE_CLIENT_IO_SERIES_SURFACE_SEQUENCE_H_
+#define CLEAVE_CLIENT_IO_SERIES_SURFACE_SEQUENCE_H_
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "client/io/series/shown_surface.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/stream/frame.h"
+#include "core/surface/faces.h"
+#include "core/surface/point_motion.h"
+#include "core/surface/surface_topology.h"
+
+namespace cleave {
+
+// What a sequence works out beside positions.
+struct SequenceOptions {
+  bool strains = false;
+  bool displacements = false;
+  bool velocities = false;
+};
+
+// Turns the frames of one run, given in order, into the surfaces to be seen. The surface is taken
+// apart anew only where edges broke since the last frame; else its points just move. Not
+// thread-safe; loops run on the caller's TBB arena.
+class SurfaceSequence {
+ public:
+  // `mesh` must outlive this object and have passed CheckMesh.
+  SurfaceSequence(const TetMesh& mesh, const SequenceOptions& options);
+  SurfaceSequence(const SurfaceSequence&) = delete;
+  SurfaceSequence& operator=(const SurfaceSequence&) = delete;
+
+  // Goes on to `frame`, whose time is not before the last one's; frames may be left out. Errors:
+  // InvalidArgument for a frame that is not this mesh's or not finite; then nothing changed.
+  absl::Status Advance(const Frame& frame);
+
+  // The surface of the last frame. Piece ids count up from 0 in the order in which pieces appear,
+  // of those of one frame the one with more nodes first; a piece that breaks hands its id to the
+  // part with its smallest node. Strains are means over the live tets at the nodes (0 where there
+  // is none); velocities are means since the frame before, 0 in the first.
+  const ShownSurface& surface() const { return shown_; }
+  const SurfaceTopology& topology() const { return topology_; }
+  const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
+  int64_t piece_count() const { return topology_.fragment_count; }
+
+  // Largest principal stretch minus 1 of every tet at the node positions given (m), as flat tets
+  // have it: 0 for a tet without rest volume.
+  std::vector<float> TetStrains(const std::vector<Vec3>& positions) const;
+
+ private:
+  absl::Status Check(const Frame& frame) const;
+  void TakeApart(const Frame& frame);
+  void NamePieces();
+  void FindStrains(const std::vector<Vec3>& positions);
+
+  const TetMesh& mesh_;
+  SequenceOptions options_;
+  Incidence incidence_;
+  Faces faces_;
+  PointMotion motion_;
+  std::vector<std::array<float, 9>> rest_inverses_;  // 1/m, a tet each; only with strains
+  std::vector<float> rest_volumes_;                  // m^3; only with strains
+
+  bool started_ = false;
+  std::vector<int32_t> broken_edges_;
+  std::vector<Vec3> node_positions_;  // m, of the last frame
+  SurfaceTopology topology_;
+  std::map<int32_t, int32_t> pieces_by_smallest_node_;
+  std::vector<int32_t> node_pieces_;
+  ShownSurface shown_;
+  std::vector<Vec3> previous_points_;  // scratch
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_SERIES_SURFACE_SEQUENCE_H_

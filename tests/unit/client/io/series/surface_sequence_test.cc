@@ -1,0 +1,115 @@
+#include "client/io/series/surface_sequence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+namespace cleave {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::FloatNear;
+using ::testing::HasSubstr;
+
+// Two tets on a common face: nodes 0 and 4 are the tips.
+TetMesh TwoTets() {
+  TetMesh mesh;
+  mesh.rest_positions = {{0, 0, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.tets = {{1, 3, 2, 0}, {1, 2, 3, 4}};
+  mesh.tet_regions = {5, 6};
+  return mesh;
+}
+
+Frame AtRest(const TetMesh& mesh) {
+  Frame frame;
+  frame.positions = mesh.rest_positions;
+  return frame;
+}
+
+// Every edge at node 4.
+std::vector<int32_t> EdgesAtTip(const TetMesh& mesh) {
+  const Incidence incidence = BuildIncidence(mesh);
+  const auto edges = incidence.node_edges[4];
+  return {edges.begin(), edges.end()};
+}
+
+TEST(SurfaceSequence, AWholeBodyIsOnePieceWithItsRegions) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {});
+  ASSERT_TRUE(sequence.Advance(AtRest(mesh)).ok());
+  const ShownSurface& surface = sequence.surface();
+  EXPECT_TRUE(CheckShownSurface(surface).ok());
+  EXPECT_EQ(surface.triangles.size(), 6u);
+  EXPECT_THAT(surface.pieces, Each(0));
+  EXPECT_THAT(surface.inside, Each(0));
+  EXPECT_EQ(std::set<int32_t>(surface.regions.begin(), surface.regions.end()),
+            (std::set<int32_t>{5, 6}));
+  EXPECT_TRUE(surface.strains.empty());
+  EXPECT_TRUE(surface.velocities.empty());
+}
+
+TEST(SurfaceSequence, ABreakOpensInsideFacesAndThePiecesKeepTheirIds) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {});
+  Frame frame = AtRest(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  frame.time = 0.1;
+  frame.broken_edges = EdgesAtTip(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_EQ(sequence.piece_count(), 2);
+  EXPECT_THAT(sequence.node_pieces(), ElementsAre(0, 0, 0, 0, 1));
+  EXPECT_THAT(sequence.surface().inside, ::testing::Contains(1));
+  EXPECT_THAT(sequence.surface().pieces, ::testing::Contains(1));
+  EXPECT_EQ(sequence.surface().broken_edges, 3);
+  EXPECT_TRUE(CheckShownSurface(sequence.surface()).ok());
+}
+
+TEST(SurfaceSequence, VelocityAndDisplacementFollowARigidMotionAlsoWhereEdgesBreak) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {.displacements = true, .velocities = true});
+  Frame frame = AtRest(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_THAT(sequence.surface().velocities, Each(Vec3{0, 0, 0}));
+  frame.time = 0.5;
+  for (Vec3& position : frame.positions) position[0] += 1;
+  frame.broken_edges = EdgesAtTip(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  for (const Vec3& velocity : sequence.surface().velocities) EXPECT_NEAR(velocity[0], 2, 1e-12);
+  for (const Vec3& moved : sequence.surface().displacements) EXPECT_NEAR(moved[0], 1, 1e-12);
+}
+
+TEST(SurfaceSequence, StrainIsTheLargestPrincipalStretchLessOne) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {.strains = true});
+  Frame frame = AtRest(mesh);
+  // Stretched by 1.25 along y, squeezed along x, and turned by a quarter about z.
+  for (Vec3& p : frame.positions) p = {-1.25 * p[1], 0.9 * p[0], p[2]};
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_THAT(sequence.surface().strains, Each(FloatNear(0.25f, 1e-5f)));
+}
+
+TEST(SurfaceSequence, AFrameOfAnotherMeshIsRefusedAndChangesNothing) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {});
+  ASSERT_TRUE(sequence.Advance(AtRest(mesh)).ok());
+  Frame frame = AtRest(mesh);
+  frame.time = -1;
+  frame.positions.pop_back();
+  frame.positions[2][1] = std::numeric_limits<double>::infinity();
+  frame.broken_edges = {3, 2};
+  const absl::Status status = sequence.Advance(frame);
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  for (const char* field : {"time", "positions", "positions[2]", "broken_edges[1]"}) {
+    EXPECT_THAT(std::string(status.message()), HasSubstr(field));
+  }
+  frame = AtRest(mesh);
+  frame.broken_edges = {9};
+  EXPECT_FALSE(sequence.Advance(frame).ok());
+  EXPECT_EQ(sequence.surface().broken_edges, 0);
+}
+
+}  // namespace
+}  // namespace cleave
