@@ -84,7 +84,7 @@ std::vector<Matrix3d> Stresses(const TetMesh& mesh, const std::vector<Vec3>& pos
 
 class EdgeStressTest : public ::testing::Test {
  protected:
-  EdgeStressTest() : mesh_(KuhnMesh(2, 1, 1, {2, 1, 1})), incidence_(BuildIncidence(mesh_)) {
+  EdgeStressTest() : mesh_(KuhnBox({2, 1, 1}, {2, 1, 1})), incidence_(BuildIncidence(mesh_)) {
     for (const auto& [x, y, z] : mesh_.rest_positions) {
       positions_.push_back({x + 0.05 * x * x + 0.03 * y * z, y - 0.02 * x * y, z + 0.04 * z * x});
     }

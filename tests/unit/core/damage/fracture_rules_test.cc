@@ -202,7 +202,7 @@ void CheckInvariants(const TetMesh& mesh, const Incidence& incidence, EdgeFractu
 }
 
 TEST(Rules, HoldAfterEveryPassOfABoxThatFallsApart) {
-  const TetMesh mesh = KuhnMesh(5, 4, 3, {1.5, 1, 0.7});
+  const TetMesh mesh = KuhnBox({5, 4, 3}, {1.5, 1, 0.7});
   const Incidence incidence = BuildIncidence(mesh);
   for (uint64_t seed = 0; seed < 5; ++seed) {
     const double threshold = 1;

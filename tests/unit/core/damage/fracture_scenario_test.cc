@@ -196,7 +196,7 @@ class PulledBar {
     return fracture_.BreakPass(positions, stress);
   }
 
-  const TetMesh mesh_ = KuhnMesh(6, 2, 2, {3, 1, 1});
+  const TetMesh mesh_ = KuhnBox({6, 2, 2}, {3, 1, 1});
   const Incidence incidence_ = BuildIncidence(mesh_);
   const double dt_;
   const std::vector<double> thresholds_;

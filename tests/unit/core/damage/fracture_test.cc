@@ -190,7 +190,7 @@ class RandomStress : public ::testing::Test {
     return saved;
   }
 
-  const TetMesh mesh_ = KuhnMesh(14, 10, 9, {1.4, 1, 0.9});
+  const TetMesh mesh_ = KuhnBox({14, 10, 9}, {1.4, 1, 0.9});
   const Incidence incidence_ = BuildIncidence(mesh_);
   const double threshold_ = 2.0;
 };

@@ -1,44 +1,46 @@
 #ifndef CLEAVE_TESTS_UNIT_CORE_MESH_KUHN_MESH_H_
 #define CLEAVE_TESTS_UNIT_CORE_MESH_KUHN_MESH_H_
 
-#include <algorithm>
 #include <array>
+#include <cstdint>
 
+#include "core/mesh/tet_geometry.h"
 #include "core/mesh/tet_mesh.h"
 
 namespace cleave {
 
-// A box of nx x ny x nz cells with a corner at the origin, each cell split into six tets along its
-// main diagonal, one for each order of the axes: the mesh of the reference values.
-inline TetMesh KuhnMesh(int nx, int ny, int nz, const Vec3& size) {
+// A box from the origin of nx, ny, nz cells, each split into six tets along its main diagonal, one
+// per permutation of the axes. Node (i, j, k) has id (i * (ny + 1) + j) * (nz + 1) + k.
+inline TetMesh KuhnBox(std::array<int, 3> cells, Vec3 size, Vec3 origin = {0, 0, 0}) {
   TetMesh mesh;
-  const std::array<int, 3> cells{nx, ny, nz};
-  const auto node_id = [&](const std::array<int, 3>& at) {
-    return (at[0] * (ny + 1) + at[1]) * (nz + 1) + at[2];
+  const auto node = [&](std::array<int, 3> at) {
+    return (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
   };
-  std::array<int, 3> at{};
-  for (at[0] = 0; at[0] <= nx; ++at[0])
-    for (at[1] = 0; at[1] <= ny; ++at[1])
-      for (at[2] = 0; at[2] <= nz; ++at[2])
-        mesh.rest_positions.push_back(
-            {size[0] * at[0] / nx, size[1] * at[1] / ny, size[2] * at[2] / nz});
-  for (at[0] = 0; at[0] < cells[0]; ++at[0]) {
-    for (at[1] = 0; at[1] < cells[1]; ++at[1]) {
-      for (at[2] = 0; at[2] < cells[2]; ++at[2]) {
-        std::array<size_t, 3> axes{0, 1, 2};
-        bool even = true;
-        do {
-          std::array<int, 3> walk = at;
-          std::array<int32_t, 4> tet{node_id(walk)};
+  for (int i = 0; i <= cells[0]; ++i) {
+    for (int j = 0; j <= cells[1]; ++j) {
+      for (int k = 0; k <= cells[2]; ++k) {
+        mesh.rest_positions.push_back({origin[0] + size[0] * i / cells[0],
+                                       origin[1] + size[1] * j / cells[1],
+                                       origin[2] + size[2] * k / cells[2]});
+      }
+    }
+  }
+  constexpr int kPermutations[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},
+                                       {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int i = 0; i < cells[0]; ++i) {
+    for (int j = 0; j < cells[1]; ++j) {
+      for (int k = 0; k < cells[2]; ++k) {
+        for (const auto& permutation : kPermutations) {
+          std::array<int, 3> at = {i, j, k};
+          std::array<int32_t, 4> tet = {node(at), 0, 0, 0};
           for (size_t step = 0; step < 3; ++step) {
-            ++walk[axes[step]];
-            tet[step + 1] = node_id(walk);
+            ++at[static_cast<size_t>(permutation[step])];
+            tet[step + 1] = node(at);
           }
-          // Going through permutations in order, signs alternate + - - + + -.
-          even = (axes[0] < axes[1]) == ((axes[1] < axes[2]) == (axes[0] < axes[2]));
-          if (!even) std::swap(tet[2], tet[3]);
           mesh.tets.push_back(tet);
-        } while (std::next_permutation(axes.begin(), axes.end()));
+          if (SignedVolume(CornersOf(mesh, mesh.tet_count() - 1)) < 0)
+            std::swap(mesh.tets.back()[2], mesh.tets.back()[3]);
+        }
       }
     }
   }

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/simulation/simulation.h"
-#include "tests/unit/core/solver/kuhn_mesh.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {

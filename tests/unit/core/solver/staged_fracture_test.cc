@@ -9,7 +9,7 @@
 #include "core/model/build_model.h"
 #include "core/model/tet_batches.h"
 #include "core/solver/stepper.h"
-#include "tests/unit/core/solver/kuhn_mesh.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {

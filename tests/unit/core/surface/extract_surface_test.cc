@@ -14,7 +14,7 @@ namespace {
 
 // A box whose nodes are off the lattice, so that nothing is flat or equal by chance.
 TetMesh JitteredBox(int nx, int ny, int nz) {
-  TetMesh mesh = KuhnMesh(nx, ny, nz, {1.0 * nx, 1.0 * ny, 1.0 * nz});
+  TetMesh mesh = KuhnBox({nx, ny, nz}, {1.0 * nx, 1.0 * ny, 1.0 * nz});
   for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
     for (size_t axis = 0; axis < 3; ++axis)
       mesh.rest_positions[node][axis] +=

@@ -12,7 +12,7 @@ using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
 TEST(Fragments, OfABarCutInTwoHaveTheirNodesShareOfTheVolume) {
-  TetMesh mesh = KuhnMesh(3, 1, 1, {3, 1, 1});
+  TetMesh mesh = KuhnBox({3, 1, 1}, {3, 1, 1});
   mesh.rest_positions.push_back({9, 9, 9});  // a node of no tet
   const Incidence incidence = BuildIncidence(mesh);
   std::vector<int32_t> cut;

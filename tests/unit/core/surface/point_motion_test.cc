@@ -33,7 +33,7 @@ void ExpectNear(const std::vector<Vec3>& actual, const std::vector<Vec3>& expect
 
 class PointMotionTest : public ::testing::Test {
  protected:
-  const SurfaceCase box_{KuhnMesh(4, 4, 3, {1.2, 1, 0.8})};
+  const SurfaceCase box_{KuhnBox({4, 4, 3}, {1.2, 1, 0.8})};
   const Matrix3d rotation_ =
       Eigen::AngleAxisd(2.5, Vector3d(0.3, -1, 0.7).normalized()).toRotationMatrix();
   const Vector3d offset_{3, -5, 2};
@@ -106,7 +106,7 @@ TEST_F(PointMotionTest, HoldsWildStretchesWithinBounds) {
 }
 
 TEST_F(PointMotionTest, GivesTheSameBitsForAnyNumberOfThreads) {
-  const SurfaceCase box(KuhnMesh(12, 12, 10, {1.2, 1, 0.8}));
+  const SurfaceCase box(KuhnBox({12, 12, 10}, {1.2, 1, 0.8}));
   const SurfaceTopology surface = box.Extract(box.RandomEdges(5, 0.4), true);
   const std::vector<Vec3> positions = Mapped(box.mesh.rest_positions, rotation_, offset_);
   std::vector<Vec3> one, two;
