@@ -35,7 +35,7 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
       options_(options),
       incidence_(BuildIncidence(mesh)),
       faces_(BuildFaces(mesh)),
-      motion_(mesh_, incidence_) {
+      moved_(mesh_, incidence_) {
   if (!options_.strains) return;
   rest_inverses_.resize(mesh.tets.size());
   rest_volumes_.resize(mesh.tets.size());
@@ -87,39 +87,16 @@ absl::Status SurfaceSequence::Check(const Frame& frame) const {
 
 absl::Status SurfaceSequence::Advance(const Frame& frame) {
   CLEAVE_RETURN_IF_ERROR(Check(frame));
-  const double step = frame.time - shown_.time;
-  const bool taken_apart = !started_ || frame.broken_edges != broken_edges_;
-  if (taken_apart) TakeApart(frame);
-  if (options_.velocities && started_) {
-    if (taken_apart) {
-      motion_.Move(topology_, node_positions_, previous_points_);
-    } else {
-      previous_points_ = shown_.points;
-    }
-  }
-  motion_.Move(topology_, frame.positions, shown_.points);
-  const size_t points = shown_.points.size();
-  if (options_.displacements) {
-    shown_.displacements.resize(points);
-    for (size_t i = 0; i < points; ++i) {
-      for (size_t k = 0; k < 3; ++k) {
-        shown_.displacements[i][k] = shown_.points[i][k] - topology_.points[i].rest[k];
-      }
-    }
-  }
-  if (options_.velocities) {
-    shown_.velocities.assign(points, Vec3{0, 0, 0});
-    for (size_t i = 0; started_ && step > 0 && i < points; ++i) {
-      for (size_t k = 0; k < 3; ++k) {
-        shown_.velocities[i][k] = (shown_.points[i][k] - previous_points_[i][k]) / step;
-      }
-    }
-  }
+  changed_ = !started_ || frame.broken_edges != broken_edges_;
+  if (changed_) TakeApart(frame);
+  moved_.Advance(topology_, changed_, frame.positions, frame.time, options_.velocities);
+  shown_.points = moved_.points();
+  shown_.velocities = moved_.velocities();
+  if (options_.displacements) shown_.displacements = Displacements(topology_, shown_.points);
   if (options_.strains) FindStrains(frame.positions);
   shown_.frame = frame.frame;
   shown_.time = frame.time;
   shown_.broken_edges = static_cast<int64_t>(frame.broken_edges.size());
-  node_positions_ = frame.positions;
   started_ = true;
   return absl::OkStatus();
 }

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "client/io/series/moved_points.h"
 #include "client/io/series/shown_surface.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
 #include "core/surface/faces.h"
-#include "core/surface/point_motion.h"
 #include "core/surface/surface_topology.h"
 
 namespace cleave {
@@ -45,6 +45,9 @@ class SurfaceSequence {
   const SurfaceTopology& topology() const { return topology_; }
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
   int64_t piece_count() const { return topology_.fragment_count; }
+  const Incidence& incidence() const { return incidence_; }
+  // Whether the topology is another one than a frame before.
+  bool changed() const { return changed_; }
 
   // Largest principal stretch minus 1 of every tet at the node positions given (m), as flat tets
   // have it: 0 for a tet without rest volume.
@@ -60,18 +63,17 @@ class SurfaceSequence {
   SequenceOptions options_;
   Incidence incidence_;
   Faces faces_;
-  PointMotion motion_;
+  MovedPoints moved_;
   std::vector<std::array<float, 9>> rest_inverses_;  // 1/m, a tet each; only with strains
   std::vector<float> rest_volumes_;                  // m^3; only with strains
 
   bool started_ = false;
+  bool changed_ = false;
   std::vector<int32_t> broken_edges_;
-  std::vector<Vec3> node_positions_;  // m, of the last frame
   SurfaceTopology topology_;
   std::map<int32_t, int32_t> pieces_by_smallest_node_;
   std::vector<int32_t> node_pieces_;
   ShownSurface shown_;
-  std::vector<Vec3> previous_points_;  // scratch
 };
 
 }  // namespace cleave

@@ -1,0 +1,251 @@
+#include "client/io/export/export_series.h"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/string_view.h"
+#include "client/io/export/ply.h"
+#include "client/io/export/volume_cells.h"
+#include "client/io/export/vtu.h"
+#include "client/io/series/moved_points.h"
+#include "client/io/series/surface_sequence.h"
+#include "client/io/series/write_aside.h"
+#include "core/base/state_hash.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+// Raised whenever the files made from the same frames change.
+constexpr int kExportVersion = 1;
+
+template <typename T>
+void Absorb(const std::vector<T>& values, StateHash& hash) {
+  const uint64_t count = values.size();
+  hash.Update(&count, sizeof(count));
+  hash.Update(values.data(), count * sizeof(T));
+}
+
+// Names the data that a file is made of. Piece ids and velocities depend on the frames before, so
+// each key goes into the next one.
+class Key {
+ public:
+  Key(const TetMesh& mesh, absl::string_view format) {
+    hash_.Update(&kExportVersion, sizeof(kExportVersion));
+    hash_.Update(format.data(), format.size());
+    Absorb(mesh.rest_positions, hash_);
+    Absorb(mesh.tets, hash_);
+    Absorb(mesh.tet_regions, hash_);
+  }
+  void Add(const Frame& frame) {
+    hash_.Update(&frame.frame, sizeof(frame.frame));
+    hash_.Update(&frame.time, sizeof(frame.time));
+    Absorb(frame.positions, hash_);
+    Absorb(frame.broken_edges, hash_);
+  }
+  std::string Comment() const { return absl::StrFormat("cleave %016x", hash_.Digest()); }
+
+ private:
+  StateHash hash_;
+};
+
+std::vector<int32_t> PointPieces(const ShownSurface& surface) {
+  std::vector<int32_t> pieces(surface.points.size(), -1);
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (const int32_t point : surface.triangles[i]) {
+      pieces[static_cast<size_t>(point)] = surface.pieces[i];
+    }
+  }
+  return pieces;
+}
+
+VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
+  const ShownSurface& surface = sequence.surface();
+  VtuGrid grid;
+  grid.time = surface.time;
+  grid.points = surface.points;
+  for (const auto& triangle : surface.triangles) {
+    grid.connectivity.insert(grid.connectivity.end(), triangle.begin(), triangle.end());
+    grid.offsets.push_back(static_cast<int64_t>(grid.connectivity.size()));
+  }
+  grid.types.assign(surface.triangles.size(), kVtuTriangle);
+  const std::vector<int32_t> pieces = PointPieces(surface);
+  grid.point_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
+  grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
+  grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
+  grid.point_data.push_back(MakeVtuArray<float>("strain", surface.strains));
+  grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", surface.pieces));
+  grid.cell_data.push_back(MakeVtuArray<int32_t>("region", surface.regions));
+  grid.cell_data.push_back(MakeVtuArray<uint8_t>("inside", surface.inside));
+  grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", sequence.topology().tets));
+  return grid;
+}
+
+// The volume's cells and where their points are, kept from frame to frame.
+class VolumeSequence {
+ public:
+  VolumeSequence(const TetMesh& mesh, const SurfaceSequence& sequence)
+      : mesh_(mesh), sequence_(sequence), moved_(mesh, sequence.incidence()) {}
+
+  // Call after every Advance of the sequence.
+  void Advance(const Frame& frame) {
+    const bool changed = sequence_.changed();
+    if (changed) cells_ = BuildVolumeCells(mesh_, sequence_.topology().tet_masks);
+    moved_.Advance(cells_.topology, changed, frame.positions, frame.time, true);
+  }
+
+  VtuGrid Grid(const Frame& frame) const {
+    VtuGrid grid;
+    grid.time = frame.time;
+    grid.points = moved_.points();
+    grid.connectivity = cells_.connectivity;
+    grid.offsets = cells_.offsets;
+    grid.types = cells_.types;
+    AddData(frame, grid);
+    return grid;
+  }
+
+ private:
+  void AddData(const Frame& frame, VtuGrid& grid) const {
+    const std::vector<float> tet_strains = sequence_.TetStrains(frame.positions);
+    std::vector<int32_t> point_pieces;
+    for (const int32_t node : cells_.point_nodes) point_pieces.push_back(Piece(node));
+    std::vector<int32_t> pieces;
+    std::vector<int32_t> regions;
+    std::vector<float> strains;
+    std::vector<uint8_t> broken;
+    std::vector<uint8_t> separated;
+    for (size_t cell = 0; cell < cells_.types.size(); ++cell) {
+      const auto tet = static_cast<size_t>(cells_.cell_tets[cell]);
+      const EdgeMask mask = cells_.topology.tet_masks[tet];
+      pieces.push_back(Piece(cells_.cell_nodes[cell]));
+      regions.push_back(mesh_.region_of(cells_.cell_tets[cell]));
+      // A separated tet spans a gap, which is no strain.
+      strains.push_back(Separated(mask) ? 0.0f : tet_strains[tet]);
+      broken.push_back(static_cast<uint8_t>(__builtin_popcount(mask)));
+      separated.push_back(Separated(mask) ? 1 : 0);
+    }
+    grid.point_data.push_back(MakeVtuArray<int32_t>("piece", point_pieces));
+    const std::vector<Vec3> displacements = Displacements(cells_.topology, grid.points);
+    grid.point_data.push_back(MakeVtuVectors("displacement", displacements));
+    grid.point_data.push_back(MakeVtuVectors("velocity", moved_.velocities()));
+    grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
+    grid.cell_data.push_back(MakeVtuArray<int32_t>("region", regions));
+    grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", cells_.cell_tets));
+    grid.cell_data.push_back(MakeVtuArray<float>("strain", strains));
+    grid.cell_data.push_back(MakeVtuArray<uint8_t>("broken_edges", broken));
+    grid.cell_data.push_back(MakeVtuArray<uint8_t>("separated", separated));
+  }
+  int32_t Piece(int32_t node) const { return sequence_.node_pieces()[static_cast<size_t>(node)]; }
+
+  const TetMesh& mesh_;
+  const SurfaceSequence& sequence_;
+  MovedPoints moved_;
+  VolumeCells cells_;
+};
+
+// How a format goes on to a frame, and what it makes of it.
+struct Format {
+  // Called for every frame, also where its file stands: later frames depend on it.
+  std::function<absl::Status(const Frame& frame)> advance;
+  std::function<absl::StatusOr<std::string>(const Frame& frame, const std::string& comment)> encode;
+};
+
+class SeriesWriter {
+ public:
+  SeriesWriter(const TetMesh& mesh, const ExportOptions& options, absl::string_view ending,
+               absl::string_view format)
+      : options_(options), ending_(ending), key_(mesh, format) {}
+
+  absl::Status Write(const FrameSource& frames, const Format& format, const Progress& progress) {
+    if (frames.count <= 0) return absl::InvalidArgumentError("there are no frames to export");
+    CLEAVE_RETURN_IF_ERROR(MakeDirectories(options_.folder));
+    for (int64_t position = 0; position < frames.count; ++position) {
+      CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames.read(position));
+      CLEAVE_RETURN_IF_ERROR(format.advance(frame));
+      key_.Add(frame);
+      const std::string file = absl::StrFormat("%s_%06d.%s", options_.name, frame.frame, ending_);
+      const std::string path = PathOf(file);
+      // The comment stands in the first lines; a file is only ever renamed into place whole.
+      if (absl::StrContains(ReadStart(path, 256), key_.Comment())) {
+        ++result_.kept;
+      } else {
+        CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, format.encode(frame, key_.Comment()));
+        CLEAVE_RETURN_IF_ERROR(WriteAside(path, bytes));
+        ++result_.written;
+      }
+      entries_.push_back({frame.time, file});
+      if (progress && !progress(position + 1, frames.count)) {
+        return absl::CancelledError(
+            absl::StrCat("export stopped after ", position + 1, " of ", frames.count, " frames"));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status WriteCollection() {
+    if (entries_.empty()) return absl::OkStatus();
+    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, EncodePvd(entries_));
+    result_.collection = PathOf(absl::StrCat(options_.name, ".pvd"));
+    return WriteAside(result_.collection, bytes);
+  }
+
+  const ExportResult& result() const { return result_; }
+
+ private:
+  std::string PathOf(const std::string& file) const {
+    return options_.folder.empty() ? file : absl::StrCat(options_.folder, "/", file);
+  }
+
+  const ExportOptions& options_;
+  const std::string ending_;
+  Key key_;
+  std::vector<PvdEntry> entries_;
+  ExportResult result_;
+};
+
+}  // namespace
+
+absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSource& frames,
+                                            VtuContent content, const ExportOptions& options,
+                                            const Progress& progress) {
+  SurfaceSequence sequence(mesh, {.strains = true, .displacements = true, .velocities = true});
+  std::optional<VolumeSequence> volume;
+  if (content == VtuContent::kVolume) volume.emplace(mesh, sequence);
+  Format format;
+  format.advance = [&](const Frame& frame) -> absl::Status {
+    CLEAVE_RETURN_IF_ERROR(sequence.Advance(frame));
+    if (volume) volume->Advance(frame);
+    return absl::OkStatus();
+  };
+  format.encode = [&](const Frame& frame, const std::string& comment) {
+    return EncodeVtu(volume ? volume->Grid(frame) : SurfaceGrid(sequence), comment);
+  };
+  SeriesWriter writer(mesh, options, "vtu", volume ? "vtu volume" : "vtu surface");
+  const absl::Status written = writer.Write(frames, format, progress);
+  const absl::Status collected = writer.WriteCollection();
+  CLEAVE_RETURN_IF_ERROR(written);
+  CLEAVE_RETURN_IF_ERROR(collected);
+  return writer.result();
+}
+
+absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
+                                            const ExportOptions& options,
+                                            const Progress& progress) {
+  SurfaceSequence sequence(mesh, {});
+  Format format;
+  format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
+  format.encode = [&](const Frame&, const std::string& comment) {
+    return EncodePly(sequence.surface(), comment);
+  };
+  SeriesWriter writer(mesh, options, "ply", "ply");
+  CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));
+  return writer.result();
+}
+
+}  // namespace cleave

@@ -1,0 +1,52 @@
+#ifndef CLEAVE_CLIENT_IO_EXPORT_EXPORT_SERIES_H_
+#define CLEAVE_CLIENT_IO_EXPORT_EXPORT_SERIES_H_
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/io/series/frame_source.h"
+#include "core/mesh/tet_mesh.h"
+
+namespace cleave {
+
+// What the cells of a VTU series are.
+enum class VtuContent {
+  kSurface,  // triangles of the closed surfaces of all pieces, split elements included
+  kVolume,   // every tet; four corner cells in place of one whose vertices are separated
+};
+
+struct ExportOptions {
+  std::string folder;           // made where it is missing
+  std::string name = "cleave";  // files are NAME_000012.vtu, the collection NAME.pvd
+};
+
+struct ExportResult {
+  int64_t written = 0;     // files
+  int64_t kept = 0;        // files that stood already, made from the same data
+  std::string collection;  // path of the .pvd; empty for PLY
+};
+
+// Writes a file a frame and a ParaView collection of them.
+// Point data of both contents: piece, displacement (m, from rest), velocity (m/s, mean since the
+// frame before; 0 in the first). Surface: strain a point (largest principal stretch less 1, mean of
+// the tets round it); region, tet, piece and inside (1: opened by a crack) a cell. Volume: region,
+// tet, piece, strain, broken_edges (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces are
+// those of SurfaceSequence, tets the mesh file's.
+//
+// A file that an earlier call made from the same data is kept, so that a cut export goes on where
+// it was. Files are written aside and renamed. After an error (or a stop by `progress`, Cancelled)
+// the collection lists what is there. `progress` may be empty. Precondition: `mesh` passed
+// CheckMesh. Errors: InvalidArgument for no frames or frames of another mesh; what reading frames
+// and writing files gives.
+absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSource& frames,
+                                            VtuContent content, const ExportOptions& options,
+                                            const Progress& progress);
+
+// The same as PLY files of the surface (ply.h); there is no collection.
+absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
+                                            const ExportOptions& options, const Progress& progress);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_EXPORT_EXPORT_SERIES_H_

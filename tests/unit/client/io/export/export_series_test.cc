@@ -1,0 +1,201 @@
+#include "client/io/export/export_series.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "client/io/series/write_aside.h"
+#include "core/mesh/incidence.h"
+#include "tests/unit/client/io/export/vtu_reader.h"
+
+namespace cleave {
+namespace {
+
+using ::cleave::testing::ReadVtu;
+using ::cleave::testing::ReadVtuFile;
+using ::cleave::testing::XmlReader;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+TetMesh TwoTets() {
+  TetMesh mesh;
+  mesh.rest_positions = {{0, 0, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.tets = {{1, 3, 2, 0}, {1, 2, 3, 4}};
+  mesh.tet_regions = {5, 6};
+  return mesh;
+}
+
+// Five frames; from the third on the tip, node 4, is broken off and flies up at 10 m/s.
+FrameSource FlyingTip(const TetMesh& mesh) {
+  FrameSource source;
+  source.count = 5;
+  source.read = [&mesh](int64_t position) -> absl::StatusOr<Frame> {
+    Frame frame;
+    frame.frame = position;
+    frame.time = 0.1 * static_cast<double>(position);
+    frame.positions = mesh.rest_positions;
+    if (position >= 2) {
+      frame.positions[4][2] += static_cast<double>(position) - 2;
+      const Incidence incidence = BuildIncidence(mesh);
+      const auto edges = incidence.node_edges[4];
+      frame.broken_edges.assign(edges.begin(), edges.end());
+    }
+    return frame;
+  };
+  return source;
+}
+
+class ExportSeriesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    options_.folder = ::testing::TempDir() + "/export/" +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::remove_all(options_.folder);
+    options_.name = "run";
+  }
+
+  std::string ReadWhole(const std::string& name) const {
+    std::ifstream file(options_.folder + "/" + name, std::ios::binary);
+    std::stringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+  }
+  ReadVtu Vtu(const std::string& name) const {
+    auto vtu = ReadVtuFile(ReadWhole(name));
+    EXPECT_TRUE(vtu.ok()) << vtu.status();
+    return vtu.ok() ? *std::move(vtu) : ReadVtu{};
+  }
+
+  const TetMesh mesh_ = TwoTets();
+  ExportOptions options_;
+};
+
+TEST_F(ExportSeriesTest, SurfaceSeriesShowsPiecesInsideFacesAndVelocities) {
+  int64_t calls = 0;
+  const auto result = WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_,
+                                     [&](int64_t done, int64_t total) {
+                                       EXPECT_EQ(done, ++calls);
+                                       EXPECT_EQ(total, 5);
+                                       return true;
+                                     });
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->written, 5);
+  EXPECT_EQ(calls, 5);
+
+  const auto collection = XmlReader::Read(ReadWhole("run.pvd"));
+  ASSERT_TRUE(collection.ok()) << collection.status();
+  const auto entries = collection->All("DataSet");
+  ASSERT_EQ(entries.size(), 5u);
+  EXPECT_EQ(entries[3]->attributes.at("file"), "run_000003.vtu");
+  EXPECT_DOUBLE_EQ(std::stod(entries[3]->attributes.at("timestep")), 0.3);
+
+  const ReadVtu whole = Vtu("run_000001.vtu");
+  EXPECT_EQ(whole.cells, 6);
+  EXPECT_THAT(whole.Values<int32_t>("CellData.piece"), Each(0));
+  EXPECT_THAT(whole.Values<uint8_t>("CellData.inside"), Each(0));
+  const ReadVtu broken = Vtu("run_000004.vtu");
+  EXPECT_EQ(broken.time, 0.4);
+  EXPECT_THAT(broken.Values<uint8_t>("CellData.inside"), Contains(1));
+  const auto regions = broken.Values<int32_t>("CellData.region");
+  EXPECT_EQ(std::set<int32_t>(regions.begin(), regions.end()), (std::set<int32_t>{5, 6}));
+  const auto pieces = broken.Values<int32_t>("PointData.piece");
+  const auto velocities = broken.Values<float>("PointData.velocity");
+  const auto displacements = broken.Values<float>("PointData.displacement");
+  ASSERT_EQ(velocities.size(), 3 * pieces.size());
+  EXPECT_THAT(pieces, Contains(1));
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i] != 1) continue;
+    EXPECT_NEAR(velocities[3 * i + 2], 10, 1e-4);
+    EXPECT_NEAR(displacements[3 * i + 2], 2, 1e-5);
+  }
+  for (const int64_t point : broken.Values<int64_t>("Cells.connectivity")) {
+    EXPECT_LT(point, broken.points);
+  }
+}
+
+TEST_F(ExportSeriesTest, VolumeSeriesSplitsSeparatedTets) {
+  const auto result =
+      WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kVolume, options_, nullptr);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_THAT(Vtu("run_000001.vtu").Values<uint8_t>("Cells.types"), ::testing::ElementsAre(10, 10));
+  const ReadVtu broken = Vtu("run_000004.vtu");
+  EXPECT_THAT(broken.Values<uint8_t>("Cells.types"), ::testing::ElementsAre(10, 12, 12, 12, 12));
+  EXPECT_THAT(broken.Values<uint8_t>("CellData.separated"), ::testing::ElementsAre(0, 1, 1, 1, 1));
+  EXPECT_THAT(broken.Values<uint8_t>("CellData.broken_edges"),
+              ::testing::ElementsAre(0, 3, 3, 3, 3));
+  EXPECT_THAT(broken.Values<int32_t>("CellData.piece"), ::testing::ElementsAre(0, 0, 0, 0, 1));
+  EXPECT_THAT(broken.Values<int32_t>("CellData.region"), ::testing::ElementsAre(5, 6, 6, 6, 6));
+}
+
+TEST_F(ExportSeriesTest, AStoppedExportGoesOnWithTheSameFiles) {
+  const auto stopped = WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_,
+                                      [](int64_t done, int64_t) { return done < 3; });
+  EXPECT_EQ(stopped.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_THAT(ReadWhole("run.pvd"), HasSubstr("run_000002.vtu"));
+  const auto result =
+      WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, nullptr);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->kept, 3);
+  EXPECT_EQ(result->written, 2);
+  const std::string resumed = ReadWhole("run_000004.vtu");
+  std::filesystem::remove_all(options_.folder);
+  ASSERT_TRUE(
+      WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, nullptr).ok());
+  EXPECT_EQ(ReadWhole("run_000004.vtu"), resumed);
+}
+
+TEST_F(ExportSeriesTest, FilesOfOtherDataAreNotKept) {
+  ASSERT_TRUE(
+      WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, nullptr).ok());
+  const auto volume =
+      WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kVolume, options_, nullptr);
+  ASSERT_TRUE(volume.ok());
+  EXPECT_EQ(volume->kept, 0);
+  TetMesh other = mesh_;
+  other.tet_regions = {1, 1};
+  const auto changed =
+      WriteVtuSeries(other, FlyingTip(other), VtuContent::kVolume, options_, nullptr);
+  ASSERT_TRUE(changed.ok());
+  EXPECT_EQ(changed->kept, 0);
+}
+
+TEST_F(ExportSeriesTest, PlySeriesWritesAFileAFrame) {
+  const auto result = WritePlySeries(mesh_, FlyingTip(mesh_), options_, nullptr);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->written, 5);
+  EXPECT_EQ(result->collection, "");
+  EXPECT_THAT(ReadWhole("run_000000.ply"), HasSubstr("element face 6\n"));
+  EXPECT_EQ(WritePlySeries(mesh_, FlyingTip(mesh_), options_, nullptr)->kept, 5);
+}
+
+TEST_F(ExportSeriesTest, BadFramesAreAStatusAndWhatWasWrittenStays) {
+  FrameSource none;
+  EXPECT_EQ(WriteVtuSeries(mesh_, none, VtuContent::kSurface, options_, nullptr).status().code(),
+            absl::StatusCode::kInvalidArgument);
+  FrameSource source = FlyingTip(mesh_);
+  const auto good = source.read;
+  source.read = [good](int64_t position) -> absl::StatusOr<Frame> {
+    auto frame = good(position);
+    if (position == 2) frame->positions[1][0] = std::numeric_limits<double>::quiet_NaN();
+    return frame;
+  };
+  const auto bad = WriteVtuSeries(mesh_, source, VtuContent::kSurface, options_, nullptr);
+  EXPECT_EQ(bad.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(bad.status().message()), HasSubstr("positions[1]"));
+  EXPECT_THAT(ReadWhole("run.pvd"), HasSubstr("run_000001.vtu"));
+  source.read = [good](int64_t position) -> absl::StatusOr<Frame> {
+    if (position == 1) return absl::DataLossError("torn");
+    return good(position);
+  };
+  EXPECT_EQ(WritePlySeries(mesh_, source, options_, nullptr).status().code(),
+            absl::StatusCode::kDataLoss);
+}
+
+}  // namespace
+}  // namespace cleave
