@@ -8,6 +8,7 @@
 #include "core/mesh/body.h"
 #include "core/mesh/lattice.h"
 #include "core/mesh/mesh_limits.h"
+#include "core/mesh/unstructured.h"
 
 namespace cleave {
 namespace {
@@ -99,9 +100,12 @@ double EstimateTets(const Body& body, const MeshResolution& resolution) {
 absl::StatusOr<TetMesh> Build(const Faults& faults, const Body& body, const Vec3& origin,
                               const MeshResolution& resolution) {
   CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
-  if (resolution.layout == MeshLayout::kUnstructured)
-    return absl::UnimplementedError("resolution.layout: only jittered lattices can be made yet");
-  TetMesh mesh = body.round ? RingLattice(body, resolution) : BoxLattice(body, resolution);
+  TetMesh mesh;
+  if (resolution.layout == MeshLayout::kUnstructured) {
+    CLEAVE_ASSIGN_OR_RETURN(mesh, UnstructuredMesh(body, resolution));
+  } else {
+    mesh = body.round ? RingLattice(body, resolution) : BoxLattice(body, resolution);
+  }
   for (Vec3& position : mesh.rest_positions) {
     for (size_t axis = 0; axis < 3; ++axis) position[axis] += origin[axis];
   }

@@ -58,7 +58,9 @@ TetMesh Sound(const Shape& shape, MeshReport* report = nullptr) {
 }
 
 class EveryLayout : public ::testing::TestWithParam<MeshLayout> {};
-INSTANTIATE_TEST_SUITE_P(Procedural, EveryLayout, ::testing::Values(MeshLayout::kJitteredLattice));
+INSTANTIATE_TEST_SUITE_P(Procedural, EveryLayout,
+                         ::testing::Values(MeshLayout::kJitteredLattice,
+                                           MeshLayout::kUnstructured));
 
 TEST_P(EveryLayout, BoxIsFilledExactly) {
   MeshReport report;
@@ -160,6 +162,46 @@ TEST_P(EveryLayout, RefusesTooManyTetsBeforeMakingAny) {
                 HasSubstr("resolution.cell_size"));
     EXPECT_THAT(BuildMesh(Disc(GetParam(), cell / 10)).status().message(),
                 HasSubstr("at most 64000000"));
+  }
+}
+
+// Mean of the squared share of an edge's direction that lies along each axis: a third each where no
+// direction is preferred.
+TEST(Unstructured, PrefersNoDirectionAndHasNoSliver) {
+  BoxMesh shape = Box(MeshLayout::kUnstructured, 0.05, {1, 1, 1});
+  MeshReport report;
+  const TetMesh mesh = Sound(shape, &report);
+  EXPECT_GT(report.min_dihedral, 18 * kDegree);
+  EXPECT_LT(report.max_dihedral, 160 * kDegree);
+  EXPECT_NEAR(report.edge_length.mean, 0.05, 0.004);
+  EXPECT_LT(report.edge_length.max, 0.1);
+  const Incidence incidence = BuildIncidence(mesh);
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (const auto& [a, b] : incidence.edges) {
+    const Eigen::Map<const Eigen::Vector3d> p(mesh.rest_positions[static_cast<size_t>(a)].data());
+    const Eigen::Map<const Eigen::Vector3d> q(mesh.rest_positions[static_cast<size_t>(b)].data());
+    const Eigen::Vector3d edge = (q - p).normalized();
+    squares += edge.cwiseProduct(edge);
+    products += Eigen::Vector3d(edge[0] * edge[1], edge[1] * edge[2], edge[2] * edge[0]);
+    ++count;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(squares[axis] / count, 1.0 / 3, 0.015);
+    EXPECT_NEAR(products[axis] / count, 0, 0.01);
+  }
+}
+
+TEST(Unstructured, IsSoundForManySeedsAndSizes) {
+  for (uint32_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const double cell = 0.08 + 0.01 * seed;
+    const MeshResolution resolution{MeshLayout::kUnstructured, cell, 0.2, seed};
+    Sound(BoxMesh{{0, 0, 0}, {1, 0.3 + 0.01 * seed, 0.5}, resolution});
+    Sound(CylinderMesh{{0, 0, 0}, 0.2 + 0.01 * seed, 1, resolution});
+    Sound(TubeMesh{{0, 0, 0}, 0.5, 0.25 + 0.015 * seed, 0.6, resolution});
+    Sound(DiscMesh{{0, 0, 0}, 0.6, 0.04 + 0.01 * seed, resolution});
   }
 }
 
