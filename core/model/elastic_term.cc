@@ -140,7 +140,8 @@ class ElasticTerm final : public TetTerm {
     return energy;
   }
 
-  void AddStiffness(const NodalVector& displacements, EdgeBlocks& blocks) override {
+  void AddStiffness(const NodalVector& displacements, Curvature curvature,
+                    EdgeBlocks& blocks) override {
     ForEachChunk(tets_, [&](int64_t, int64_t begin, int64_t end) {
       BatchBlocks element;
       for (int64_t b = begin; b < end; ++b) {
@@ -149,7 +150,7 @@ class ElasticTerm final : public TetTerm {
         for (int i = 0; i < 3; ++i) f(i, i) += 1.0;
         const SignedSvd svd = ComputeSvd(f);
         StiffnessSpectrum spectrum = Law::Spectrum(svd.s, lame(b));
-        ProjectToSemidefinite(spectrum);
+        if (curvature == Curvature::kSemidefinite) ProjectToSemidefinite(spectrum);
         ElementBlocks(batch, svd, spectrum, element);
         ScatterBlocks(batch, tets_.lanes(b), element, blocks.data());
       }

@@ -21,6 +21,12 @@ using EdgeBlocks = std::vector<float>;
 
 inline size_t EdgeBlocksSize(int64_t edge_count) { return 9 * static_cast<size_t>(edge_count + 1); }
 
+// Which second derivative of an energy.
+enum class Curvature {
+  kSemidefinite,  // negative eigenvalues of every element at 0: always leads downhill
+  kExact,         // may be indefinite, but converges quadratically
+};
+
 // An elastic energy over tets, all of them a batch. Ids are the solver's. Loops run on the caller's
 // TBB arena and give the same bits for any number of threads.
 class TetTerm {
@@ -32,8 +38,9 @@ class TetTerm {
 
   // Adds -dPsi/dx (N) at displacements from rest (m) to `forces`; returns the energy, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
-  // Adds the positive semidefinite part of every tet's second derivative to `blocks`.
-  virtual void AddStiffness(const NodalVector& displacements, EdgeBlocks& blocks) = 0;
+  // Adds every tet's second derivative to `blocks`.
+  virtual void AddStiffness(const NodalVector& displacements, Curvature curvature,
+                            EdgeBlocks& blocks) = 0;
   // Adds the first Piola-Kirchhoff stress, Pa, a tet each, without the damage factor.
   virtual void AddEffectiveStress(const NodalVector& displacements,
                                   std::span<Eigen::Matrix3d> stresses) const = 0;

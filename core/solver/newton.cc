@@ -12,6 +12,10 @@ namespace cleave {
 namespace {
 
 constexpr double kArmijo = 1e-4;
+// A full Newton step that leaves more of the residual than this has met the projection's limits.
+constexpr double kSlow = 0.1;
+// Linear solves aim this far below what the whole step has to reach.
+constexpr double kLinearMargin = 0.1;
 constexpr int kMaxBacktracks = 40;
 // Energies are sums of about as many roundings as there are tets, mostly of random sign.
 constexpr double kEnergyRounding = 1e-14;
@@ -94,6 +98,33 @@ absl::Status NewtonSolver::NotConverged(double relative_residual) const {
                                          model_.order.old_node[worst]));
 }
 
+absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displacements,
+                                                       Curvature curvature, const StopFlag& stop,
+                                                       StepReport& report) {
+  {
+    ScopedTimer timer(report.assembly_seconds);
+    EdgeBlocks& blocks = matrix_.Clear();
+    for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
+    matrix_.Finish(inertia_);
+    pcg_.Prepare(matrix_);
+  }
+  ScopedTimer timer(report.linear_solve_seconds);
+  const Quality& quality = model_.quality;
+  const double needed = kLinearMargin * quality.residual_tolerance * force_scale_ / residual_norm_;
+  const double tolerance = std::clamp(needed, quality.linear_tolerance,
+                                      std::max(kLinearMargin, quality.linear_tolerance));
+  CLEAVE_ASSIGN_OR_RETURN(const PcgSolver::Result result,
+                          pcg_.Solve(matrix_, residual_, tolerance, stop, search_));
+  report.linear_iterations += result.iterations;
+  slope_ = -Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+      sum += residual_[node] * search_[node];
+    return sum;
+  }));
+  return result.positive && slope_ <= 0;
+}
+
 absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& stop,
                                  NodalVector& displacements, StepReport& report) {
   const Quality& quality = model_.quality;
@@ -106,7 +137,11 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     Evaluate(start, dt, displacements);
     initial_elastic_energy_ = elastic_energy_;
   }
-  double last_step = std::numeric_limits<double>::infinity();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double last_step = kInfinity;
+  double last_norm = kInfinity;
+  double last_share = 0;
+  bool exact_works = true;
   for (int32_t iteration = 0;; ++iteration) {
     const double relative = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
     const bool converged =
@@ -119,30 +154,21 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       return NotConverged(relative);
     ++report.newton_iterations;
 
-    {
-      ScopedTimer timer(report.assembly_seconds);
-      EdgeBlocks& blocks = matrix_.Clear();
-      for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, blocks);
-      matrix_.Finish(inertia_);
-      pcg_.Prepare(matrix_);
+    const bool slow = last_share == 1 && residual_norm_ > kSlow * last_norm;
+    bool downhill = false;
+    if (slow && exact_works) {
+      CLEAVE_ASSIGN_OR_RETURN(downhill,
+                              FindSearchDirection(displacements, Curvature::kExact, stop, report));
+      exact_works = downhill;
     }
-    {
-      ScopedTimer timer(report.linear_solve_seconds);
-      CLEAVE_ASSIGN_OR_RETURN(
-          const int32_t linear_iterations,
-          pcg_.Solve(matrix_, residual_, quality.linear_tolerance, stop, search_));
-      report.linear_iterations += linear_iterations;
+    if (!downhill) {
+      CLEAVE_RETURN_IF_ERROR(
+          FindSearchDirection(displacements, Curvature::kSemidefinite, stop, report).status());
     }
 
     // Line search. Evaluate replaces the residual, so what the decrease is measured against is
     // kept.
     ScopedTimer timer(report.assembly_seconds);
-    const double slope = -Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
-      Double4 sum = Splat(0);
-      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
-        sum += residual_[node] * search_[node];
-      return sum;
-    }));
     const double energy = energy_;
     const double norm = residual_norm_;
     const double rounding = kEnergyRounding * energy_magnitude_;
@@ -155,10 +181,10 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
           trial_[node] = displacements[node] + share * search_[node];
       });
       Evaluate(start, dt, trial_);
-      accepted = energy_ <= energy + kArmijo * share * slope;
+      accepted = energy_ <= energy + kArmijo * share * slope_;
       if (accepted) break;
       // The promised decrease drowns in rounding: there the forces judge.
-      at_rounding = share * -slope <= rounding;
+      at_rounding = share * -slope_ <= rounding;
       if (at_rounding) {
         accepted = energy_ <= energy + rounding && residual_norm_ < norm;
         break;
@@ -170,6 +196,8 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
         for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(step[axis]));
       }
       last_step = share * largest;
+      last_share = share;
+      last_norm = norm;
       displacements.swap(trial_);
       continue;
     }

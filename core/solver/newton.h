@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "core/base/stop_flag.h"
 #include "core/model/model.h"
 #include "core/solver/block_sums.h"
@@ -20,7 +21,9 @@ namespace cleave {
 //   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n)
 //
 // over the coordinates that are not given, by Newton's method with positive semidefinite element
-// stiffness and Armijo backtracking. Source: method note, section 7. Not thread-safe; loops run on
+// stiffness and Armijo backtracking. Where the projection itself slows convergence down, the exact
+// stiffness is tried, for as long as the linear solve finds it positive. A linear solve goes no
+// further than the step needs. Source: method note, section 7. Not thread-safe; loops run on
 // the caller's TBB arena and give the same bits for any number of threads.
 class NewtonSolver {
  public:
@@ -49,6 +52,9 @@ class NewtonSolver {
  private:
   // Sets the energies, gradient, residual and their norms at `displacements`.
   void Evaluate(const State& start, double dt, const NodalVector& displacements);
+  // Sets `search_` by a linear solve at `displacements`; returns whether it leads downhill.
+  absl::StatusOr<bool> FindSearchDirection(const NodalVector& displacements, Curvature curvature,
+                                           const StopFlag& stop, StepReport& report);
   absl::Status NotConverged(double relative_residual) const;
 
   const Model& model_;
@@ -64,6 +70,7 @@ class NewtonSolver {
   NodalVector search_;           // m
   NodalVector trial_;            // m
 
+  double slope_ = 0;             // J, dE along the search direction
   double energy_ = 0;            // J
   double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
   double elastic_energy_ = 0;    // J

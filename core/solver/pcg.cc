@@ -11,7 +11,8 @@ namespace cleave {
 namespace {
 
 // The inverse of the symmetric matrix with these columns, on its free axes only; 0 elsewhere.
-void InvertBlock(const Double4 columns[3], Int64x4 fixed, Double4 inverse[3]) {
+// Returns whether the matrix is positive definite; if not, the inverse is that of its diagonal.
+bool InvertBlock(const Double4 columns[3], Int64x4 fixed, Double4 inverse[3]) {
   Matrix3<double> block;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -21,23 +22,28 @@ void InvertBlock(const Double4 columns[3], Int64x4 fixed, Double4 inverse[3]) {
   }
   // Scaled to a unit diagonal, so that no determinant over- or underflows.
   double scale[3];
-  for (int i = 0; i < 3; ++i) scale[i] = 1 / std::sqrt(block(i, i));
+  bool positive = true;
+  for (int i = 0; i < 3; ++i) {
+    positive = positive && block(i, i) > 0;
+    scale[i] = 1 / std::sqrt(std::abs(block(i, i)));
+  }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) block(i, j) *= scale[i] * scale[j];
   }
   const Matrix3<double> cofactor = Cofactor(block);
   const double determinant =
       block(0, 0) * cofactor(0, 0) + block(0, 1) * cofactor(0, 1) + block(0, 2) * cofactor(0, 2);
-  // A block that is singular to rounding is preconditioned by its diagonal.
-  const bool regular = determinant > 1e-9;
+  // Singular to the rounding of floats is as good as not positive.
+  positive = positive && cofactor(2, 2) > 0 && determinant > 1e-9;
   for (int j = 0; j < 3; ++j) {
     inverse[j] = Splat(0);
     for (int i = 0; i < 3; ++i) {
       if (fixed[i] != 0 || fixed[j] != 0) continue;
-      const double entry = regular ? cofactor(i, j) / determinant : (i == j ? 1 : 0);
+      const double entry = positive ? cofactor(i, j) / determinant : (i == j ? 1 : 0);
       inverse[j][i] = entry * scale[i] * scale[j];
     }
   }
+  return positive;
 }
 
 }  // namespace
@@ -52,39 +58,51 @@ PcgSolver::PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes)
       preconditioned_(static_cast<size_t>(node_count)) {}
 
 void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
-  blocks_.Run([&](int64_t begin, int64_t end) {
+  Double4 middle[3];
+  matrix.DiagonalBlock(matrix.node_count() / 2, middle);
+  const double size = std::abs(middle[0][0]) + std::abs(middle[1][1]) + std::abs(middle[2][2]);
+  const double unit = size > 0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1;
+  const Double4 negatives = blocks_.Sum([&](int64_t begin, int64_t end) {
     auto fixed =
         std::lower_bound(fixed_nodes_.begin(), fixed_nodes_.end(), begin,
                          [](const FixedNode& entry, int64_t node) { return entry.node < node; });
+    double negative = 0;
     for (int64_t node = begin; node < end; ++node) {
-      Double4 columns[3];
+      Double4 columns[3], inverse[3];
       matrix.DiagonalBlock(node, columns);
       Int64x4 axes = {0, 0, 0, 0};
       if (fixed != fixed_nodes_.end() && fixed->node == node) axes = (fixed++)->axes;
-      InvertBlock(columns, axes, inverse_diagonal_[static_cast<size_t>(node)].columns);
+      if (!InvertBlock(columns, axes, inverse)) negative += 1;
+      for (int k = 0; k < 3; ++k) {
+        inverse_diagonal_[static_cast<size_t>(node)].columns[k] =
+            __builtin_convertvector(unit * inverse[k], Float4);
+      }
     }
+    return Splat(negative);
   });
+  positive_diagonal_ = negatives[0] == 0;
 }
 
-absl::StatusOr<int32_t> PcgSolver::Solve(const StiffnessMatrix& matrix, const NodalVector& rhs,
-                                         double tolerance, const StopFlag& stop,
-                                         NodalVector& solution) {
+absl::StatusOr<PcgSolver::Result> PcgSolver::Solve(const StiffnessMatrix& matrix,
+                                                   const NodalVector& rhs, double tolerance,
+                                                   const StopFlag& stop, NodalVector& solution) {
   double rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
     Double4 sum = Splat(0);
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
       solution[node] = Splat(0);
       residual_[node] = rhs[node];
-      direction_[node] = Precondition(node);
+      direction_[node] = Precondition(node, rhs[node]);
       sum += residual_[node] * direction_[node];
     }
     return sum;
   }));
   const double target = tolerance * tolerance * rz;
   const auto limit = static_cast<int32_t>(std::min<int64_t>(10'000, 3 * matrix.node_count() + 20));
-  int32_t iteration = 0;
-  while (iteration < limit && rz > target) {
+  Result result;
+  result.positive = positive_diagonal_;
+  while (result.iterations < limit && rz > target) {
     if (stop.requested()) return absl::CancelledError("stopped inside a linear solve");
-    ++iteration;
+    ++result.iterations;
     const double curvature = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
       matrix.Multiply(direction_, begin, end, product_);
       Double4 sum = Splat(0);
@@ -92,27 +110,33 @@ absl::StatusOr<int32_t> PcgSolver::Solve(const StiffnessMatrix& matrix, const No
         sum += direction_[node] * product_[node];
       return sum;
     }));
-    if (!(curvature > 0)) break;
+    if (!(curvature > 0)) {
+      result.positive = false;
+      break;
+    }
     const double step = rz / curvature;
     const double next_rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
       Double4 sum = Splat(0);
       for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-        solution[node] += step * direction_[node];
-        residual_[node] -= step * product_[node];
-        preconditioned_[node] = Precondition(node);
-        sum += residual_[node] * preconditioned_[node];
+        const Double4 r = residual_[node] - step * product_[node];
+        const Double4 z = Precondition(node, r);
+        residual_[node] = r;
+        preconditioned_[node] = z;
+        sum += r * z;
       }
       return sum;
     }));
-    if (!(next_rz > target)) break;
     const double beta = next_rz / rz;
     rz = next_rz;
     blocks_.Run([&](int64_t begin, int64_t end) {
-      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
-        direction_[node] = preconditioned_[node] + beta * direction_[node];
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+        const Double4 direction = direction_[node];
+        solution[node] += step * direction;
+        direction_[node] = preconditioned_[node] + beta * direction;
+      }
     });
   }
-  return iteration;
+  return result;
 }
 
 int64_t PcgSolver::bytes() const {

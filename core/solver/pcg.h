@@ -21,33 +21,40 @@ class PcgSolver {
  public:
   PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes);
 
+  struct Result {
+    int32_t iterations = 0;
+    bool positive = true;  // no sign that the matrix is not positive definite
+  };
+
   // Takes the diagonal of `matrix`; call it whenever the matrix changed.
   void Prepare(const StiffnessMatrix& matrix);
 
   // Solves matrix * solution = rhs from 0 until the preconditioned residual norm fell by
   // `tolerance`, or the iteration limit is reached, or the matrix shows itself not positive to
   // rounding: every iterate lowers the quadratic model, so all of them are worth a line search.
-  // Returns the iterations taken. Errors: Cancelled, looked for in every iteration.
-  absl::StatusOr<int32_t> Solve(const StiffnessMatrix& matrix, const NodalVector& rhs,
-                                double tolerance, const StopFlag& stop, NodalVector& solution);
+  // Errors: Cancelled, looked for in every iteration.
+  absl::StatusOr<Result> Solve(const StiffnessMatrix& matrix, const NodalVector& rhs,
+                               double tolerance, const StopFlag& stop, NodalVector& solution);
 
   int64_t bytes() const;
 
  private:
   struct InverseBlock {
-    Double4 columns[3];
+    Float4 columns[3];
   };
 
-  Double4 Precondition(size_t node) const {
-    const Double4 r = residual_[node];
+  Double4 Precondition(size_t node, Double4 r) const {
     const InverseBlock& inverse = inverse_diagonal_[node];
-    return inverse.columns[0] * Splat(r[0]) + inverse.columns[1] * Splat(r[1]) +
-           inverse.columns[2] * Splat(r[2]);
+    return __builtin_convertvector(inverse.columns[0], Double4) * Splat(r[0]) +
+           __builtin_convertvector(inverse.columns[1], Double4) * Splat(r[1]) +
+           __builtin_convertvector(inverse.columns[2], Double4) * Splat(r[2]);
   }
 
   std::vector<FixedNode> fixed_nodes_;
   NodeBlocks blocks_;
+  // Times a power of two that brings it near 1: a preconditioner's scale does not matter.
   std::vector<InverseBlock> inverse_diagonal_;
+  bool positive_diagonal_ = true;
   NodalVector residual_;
   NodalVector direction_;
   NodalVector product_;

@@ -1,0 +1,161 @@
+// Prints what a step costs and where the time goes, for boxes of growing size that are pulled until
+// they break: the table that later work is held against. `cleave_bench [tets...]` runs other sizes.
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "core/base/status.h"
+#include "core/base/stopwatch.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/procedural.h"
+#include "core/simulation/simulation.h"
+#include "core/stream/frame_encoder.h"
+#include "core/surface/extract_surface.h"
+#include "core/surface/point_motion.h"
+
+namespace cleave {
+namespace {
+
+constexpr int kFrames = 8;  // a step each
+
+// A bar of plastic, 0.3 x 0.1 x 0.1 m, whose ends part at 0.12 m/s: it starts to break after about
+// five steps.
+BoxMesh Bar(double tets) {
+  BoxMesh box;
+  box.size = {0.3, 0.1, 0.1};
+  box.resolution.layout = MeshLayout::kJitteredLattice;
+  box.resolution.cell_size = 0.1 / std::round(std::cbrt(tets / 18));
+  return box;
+}
+
+Scene PullApart(double linear_tolerance, int32_t newton_iterations) {
+  Scene scene;
+  Material plastic;
+  plastic.youngs_modulus = 1e9;
+  plastic.poisson_ratio = 0.35;
+  plastic.density = 1200;
+  plastic.tensile_strength = 1e7;
+  scene.materials.push_back(plastic);
+  for (const bool left : {true, false}) {
+    NodeSet set;
+    set.name = left ? "left" : "right";
+    set.select.push_back(left ? BoxSelector{{-1, -1, -1}, {1e-6, 1, 1}}
+                              : BoxSelector{{0.3 - 1e-6, -1, -1}, {1, 1, 1}});
+    scene.node_sets.push_back(set);
+    Motion motion;
+    motion.node_set = set.name;
+    motion.keyframes = {{0, {0, 0, 0}, 0}, {1, {left ? -0.06 : 0.06, 0, 0}, 0}};
+    scene.motions.push_back(motion);
+  }
+  scene.timing.frames_per_second = 96;
+  scene.timing.steps_per_frame = 1;
+  scene.quality.linear_tolerance = linear_tolerance;
+  scene.quality.newton_iterations = newton_iterations;
+  return scene;
+}
+
+absl::Status Measure(double wanted_tets, int threads, double linear_tolerance) {
+  tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                            static_cast<size_t>(threads));
+  CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh, BuildMesh(Bar(wanted_tets)));
+  const Scene scene = PullApart(linear_tolerance, 20);
+  Simulation::Options options;
+  options.threads = threads;
+  const Stopwatch create_watch;
+  CLEAVE_ASSIGN_OR_RETURN(const auto simulation, Simulation::Create(scene, mesh, options));
+  const double create_seconds = create_watch.Seconds();
+
+  const Incidence incidence = BuildIncidence(mesh);
+  const Faces faces = BuildFaces(mesh);
+  PointMotion motion(mesh, incidence);
+  StreamParameters parameters;
+  parameters.mesh_sha256 = std::string(32, '\0');
+  parameters.edge_count = static_cast<uint64_t>(incidence.edge_count());
+  parameters.tet_count = static_cast<uint64_t>(mesh.tet_count());
+  CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header,
+                          MakeStreamHeader(parameters, mesh.rest_positions));
+  CLEAVE_ASSIGN_OR_RETURN(FrameEncoder encoder, FrameEncoder::Create(header, mesh.rest_positions));
+
+  FrameReport sum;
+  double surface_seconds = 0, encode_seconds = 0;
+  const StopFlag stop;
+  for (int k = 0; k < kFrames; ++k) {
+    CLEAVE_ASSIGN_OR_RETURN(const FrameReport report, simulation->Advance(stop));
+    sum.steps += report.steps;
+    sum.newton_iterations += report.newton_iterations;
+    sum.linear_iterations += report.linear_iterations;
+    sum.break_passes += report.break_passes;
+    sum.assembly_seconds += report.assembly_seconds;
+    sum.linear_solve_seconds += report.linear_solve_seconds;
+    sum.fracture_seconds += report.fracture_seconds;
+    sum.total_seconds += report.total_seconds;
+    sum.broken_edges = report.broken_edges;
+    sum.fragments = report.fragments;
+    {
+      ScopedTimer timer(surface_seconds);
+      const SurfaceTopology surface =
+          ExtractSurface(mesh, incidence, faces, simulation->broken_edges(), SurfaceOptions{});
+      std::vector<Vec3> points;
+      motion.Move(surface, simulation->positions(), points);
+    }
+    ScopedTimer timer(encode_seconds);
+    Frame frame;
+    frame.frame = simulation->frame();
+    frame.time = simulation->time();
+    frame.fragments = simulation->fragments();
+    frame.positions = simulation->positions();
+    frame.broken_edges = simulation->broken_edges();
+    CLEAVE_RETURN_IF_ERROR(encoder.Encode(frame).status());
+  }
+  const double steps = sum.steps;
+  std::printf(
+      "%8lld %7d %6.0e %8.4f %8.4f %8.4f %8.4f %8.4f %8.4f %7.1f %7.0f %7.2f %8.2f %8.1f %6lld "
+      "%5lld "
+      "%7.2f\n",
+      static_cast<long long>(mesh.tet_count()), threads, linear_tolerance,
+      sum.total_seconds / steps, sum.assembly_seconds / steps, sum.linear_solve_seconds / steps,
+      sum.fracture_seconds / steps, surface_seconds / kFrames, encode_seconds / kFrames,
+      sum.newton_iterations / steps, sum.linear_iterations / steps, sum.break_passes / steps,
+      1e3 * sum.assembly_seconds / sum.newton_iterations,
+      1e6 * sum.linear_solve_seconds / sum.linear_iterations,
+      static_cast<long long>(sum.broken_edges), static_cast<long long>(sum.fragments),
+      create_seconds);
+  std::fflush(stdout);
+  return absl::OkStatus();
+}
+
+int Main(const std::vector<double>& sizes) {
+  std::printf(
+      "seconds a step (surface and encode: a frame)                                   iterations a "
+      "step         cost of one      result\n"
+      "%8s %7s %6s %8s %8s %8s %8s %8s %8s %7s %7s %7s %8s %8s %6s %5s %7s\n",
+      "tets", "threads", "cg tol", "total", "assembly", "linear", "fracture", "surface", "encode",
+      "newton", "cg", "passes", "newt ms", "cg us", "broken", "frags", "setup s");
+  for (const double tets : sizes) {
+    for (const int threads : {1, 2}) {
+      const absl::Status status = Measure(tets, threads, 1e-3);
+      if (!status.ok()) {
+        std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace cleave
+
+int main(int argc, char** argv) {
+  std::vector<double> sizes;
+  for (int k = 1; k < argc; ++k) sizes.push_back(std::atof(argv[k]));
+  if (sizes.empty()) sizes = {10e3, 40e3, 250e3};
+  return cleave::Main(sizes);
+}
