@@ -60,10 +60,12 @@ absl::Status AppendCompressed(absl::string_view bytes, std::string& out) {
 class Arrays {
  public:
   absl::Status Add(const VtuArray& array) {
-    absl::StrAppendFormat(&xml_,
-                          "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" "
-                          "format=\"appended\" offset=\"%u\"/>\n",
-                          array.type, array.name, array.components, data_.size());
+    absl::StrAppendFormat(&xml_, "<DataArray type=\"%s\" Name=\"%s\" ", array.type, array.name);
+    // VTK leaves the count out of scalars, and some readers take a count of 1 for a matrix.
+    if (array.components != 1) {
+      absl::StrAppendFormat(&xml_, "NumberOfComponents=\"%d\" ", array.components);
+    }
+    absl::StrAppendFormat(&xml_, "format=\"appended\" offset=\"%u\"/>\n", data_.size());
     return AppendCompressed(array.bytes, data_);
   }
   absl::Status AddSection(absl::string_view tag, const std::vector<VtuArray>& arrays) {

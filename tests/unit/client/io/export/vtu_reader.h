@@ -108,8 +108,9 @@ inline absl::StatusOr<ReadVtu> ReadVtuFile(absl::string_view file) {
       CLEAVE_ASSIGN_OR_RETURN(std::string bytes, TakeArray(reader));
       const std::string& type = attributes.at("type");
       const int64_t size = type == "UInt8" ? 1 : type == "Float32" || type == "Int32" ? 4 : 8;
-      int64_t components = 0;
-      if (!absl::SimpleAtoi(attributes.at("NumberOfComponents"), &components) ||
+      int64_t components = 1;
+      const auto count = attributes.find("NumberOfComponents");
+      if ((count != attributes.end() && !absl::SimpleAtoi(count->second, &components)) ||
           (attributes.at("Name") != "connectivity" &&
            static_cast<int64_t>(bytes.size()) != items * components * size)) {
         return absl::DataLossError(absl::StrCat(attributes.at("Name"), " has a wrong size"));
