@@ -46,7 +46,7 @@ ARROWS = {
                        "proto/convert", "cleave", "google",
                        "core/scene", "core/mesh", "core/stream", "core/model/footprint.h", "spdlog",
                        "zstd.h", POSIX],
-    "server/gateway/rpc": ["server/gateway", "server/session", "proto/convert", "cleave", "google",
+    "server/gateway/rpc": ["server/gateway", "server/session", "server/files", "proto/convert", "cleave", "google",
                            "grpc", "grpcpp", "core/scene", "core/mesh", "core/stream",
                            "core/model/footprint.h", "spdlog", POSIX],
     "client/cpp": ["client/cpp", "proto/convert", "cleave", "google", "grpc", "grpcpp", "core/scene",

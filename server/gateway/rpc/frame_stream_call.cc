@@ -1,0 +1,194 @@
+#include "server/gateway/rpc/frame_stream_call.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/status.h"
+#include "server/gateway/errors.h"
+#include "server/gateway/rpc/status.h"
+
+namespace cleave {
+namespace {
+
+constexpr uint32_t kDefaultChunkBytes = 256 << 10;
+constexpr uint32_t kMinChunkBytes = 16 << 10;
+constexpr uint32_t kMaxChunkBytes = 1 << 20;
+constexpr std::chrono::seconds kHeartbeat{5};
+
+}  // namespace
+
+void FrameStreamCall::OnWriteDone(bool ok) {
+  if (!ok) cancelled_ = true;
+  writing_ = false;
+  Wake();
+}
+
+void FrameStreamCall::OnCancel() {
+  cancelled_ = true;
+  Wake();
+}
+
+void FrameStreamCall::OnDone() {
+  if (session() != nullptr) session()->AddViewer(-1);
+  Close();
+}
+
+void FrameStreamCall::Step() {
+  if (answered_ || writing_) return;
+  if (session() == nullptr) {
+    if (const absl::Status status = Begin(); !status.ok()) return Answer(status);
+  }
+  if (cancelled_) return Answer(absl::CancelledError("the client is gone"));
+  if (ended_) return Answer(absl::OkStatus());
+  // Head and activity in one look: a session that rests has no frame beyond this head.
+  const HostedSession::State state = session()->state();
+  absl::Status status = session()->frames().Refresh(state.head_frame);
+  if (status.ok()) status = Continue(state);
+  if (!status.ok()) Answer(status);
+}
+
+absl::Status FrameStreamCall::CheckRequest() const {
+  Faults faults;
+  const uint32_t chunk = request_.max_chunk_bytes();
+  if (chunk != 0 && (chunk < kMinChunkBytes || chunk > kMaxChunkBytes)) {
+    faults.Error("max_chunk_bytes", absl::StrCat(chunk, " is neither 0 nor in [", kMinChunkBytes,
+                                                 ", ", kMaxChunkBytes, "]"));
+  }
+  if (request_.first_frame() < 0) {
+    faults.Error("first_frame", absl::StrCat(request_.first_frame(), " is negative"));
+  }
+  if (request_.has_stop_frame() && request_.stop_frame() < 0) {
+    faults.Error("stop_frame", absl::StrCat(request_.stop_frame(), " is negative"));
+  }
+  return faults.ok() ? absl::OkStatus() : MakeBadRequest("PARAM_OUT_OF_RANGE", "", faults);
+}
+
+absl::Status FrameStreamCall::Begin() {
+  CLEAVE_RETURN_IF_ERROR(CheckRequest());
+  CLEAVE_ASSIGN_OR_RETURN(std::shared_ptr<HostedSession> session,
+                          sessions_.Find(request_.session()));
+  session->AddViewer(1);
+  Attach(std::move(session));
+  return absl::OkStatus();
+}
+
+absl::Status FrameStreamCall::Continue(const HostedSession::State& state) {
+  if (!started_) {
+    CLEAVE_ASSIGN_OR_RETURN(started_, Start(state));
+    return absl::OkStatus();
+  }
+  if (state.deleted) {
+    SendEnd(v1::END_REASON_DELETED, "");
+  } else if (going_down()) {
+    SendEnd(v1::END_REASON_SHUTDOWN, "the server goes down; go on where you are when it is back");
+  } else if (!frame_bytes_.empty()) {
+    SendChunk(state.head_frame);
+  } else if (request_.has_stop_frame() && next_frame_ > request_.stop_frame()) {
+    SendEnd(v1::END_REASON_STOP_FRAME, "");
+  } else if (next_frame_ <= session()->frames().head()) {
+    CLEAVE_RETURN_IF_ERROR(LoadNextFrame());
+    SendChunk(state.head_frame);
+  } else if (state.state == v1::SESSION_STATE_FAILED && !state.active) {
+    SendEnd(v1::END_REASON_FAILED, absl::StrCat(state.error.reason(), ": ", state.error.message()));
+  } else if (!state.active && !request_.follow()) {
+    SendEnd(v1::END_REASON_GOAL_REACHED, "");
+  } else if (Executor::Clock::now() - last_write_ >= kHeartbeat) {
+    message_.mutable_heartbeat()->set_head_frame(state.head_frame);
+    Send();
+  } else {
+    WakeAt(last_write_ + kHeartbeat);
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
+  FrameLogReader& frames = session()->frames();
+  if (frames.head() < 0) {
+    if (state.deleted) {
+      return MakeError(absl::StatusCode::kNotFound, "SESSION_NOT_FOUND",
+                       absl::StrCat(session()->name(), " was deleted"));
+    }
+    if (going_down()) return MakeRetryLater("DRAINING", "the server goes down", 2);
+    if (state.active) return false;  // its first frame is on the way
+    if (state.state == v1::SESSION_STATE_FAILED) {
+      return MakeError(
+          absl::StatusCode::kFailedPrecondition, state.error.reason(),
+          absl::StrCat("the session failed before its first frame: ", state.error.message()));
+    }
+    CLEAVE_RETURN_IF_ERROR(session()->StartWorker());
+    return false;
+  }
+  v1::StreamStart& start = *message_.mutable_start();
+  const v1::Resume& resume = request_.resume();
+  const std::optional<IndexRow> held =
+      request_.has_resume() ? frames.Find(resume.frame()) : std::nullopt;
+  if (held.has_value() && held->epoch == resume.epoch() &&
+      held->state_hash == resume.state_hash()) {
+    start.set_resumed(true);
+    next_frame_ = held->frame + 1;
+  } else {
+    const int64_t wanted = request_.has_resume() ? resume.frame() + 1 : request_.first_frame();
+    const std::optional<IndexRow> key =
+        frames.Keyframe(std::clamp<int64_t>(wanted, 0, frames.head()));
+    if (!key.has_value()) return absl::DataLossError("the frame log has no key frame");
+    next_frame_ = key->frame;
+  }
+  CLEAVE_ASSIGN_OR_RETURN(*start.mutable_header(), frames.ReadHeader());
+  start.set_first_frame(next_frame_);
+  start.set_mesh_asset(session()->config().scene().mesh().asset());
+  Send();
+  return true;
+}
+
+absl::Status FrameStreamCall::LoadNextFrame() {
+  const std::optional<IndexRow> row = session()->frames().Find(next_frame_);
+  if (!row.has_value()) {
+    return MakeError(absl::StatusCode::kOutOfRange, "FRAME_NOT_RETAINED",
+                     absl::StrCat("frame ", next_frame_, " is not in the log"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(frame_bytes_, session()->frames().ReadFrame(*row));
+  frame_sent_ = 0;
+  return absl::OkStatus();
+}
+
+void FrameStreamCall::SendChunk(int64_t head_frame) {
+  const size_t chunk_bytes =
+      request_.max_chunk_bytes() == 0 ? kDefaultChunkBytes : request_.max_chunk_bytes();
+  const size_t size = std::min(chunk_bytes, frame_bytes_.size() - frame_sent_);
+  v1::FrameChunk& chunk = *message_.mutable_chunk();
+  chunk.set_frame(next_frame_);
+  chunk.set_offset(frame_sent_);
+  chunk.set_frame_bytes(frame_bytes_.size());
+  chunk.set_payload(frame_bytes_.data() + frame_sent_, size);
+  chunk.set_head_frame(head_frame);
+  frame_sent_ += size;
+  if (frame_sent_ == frame_bytes_.size()) {
+    frame_bytes_.clear();
+    ++next_frame_;
+  }
+  Send();
+}
+
+void FrameStreamCall::SendEnd(v1::EndReason reason, const std::string& message) {
+  v1::StreamEnd& end = *message_.mutable_end();
+  end.set_last_frame(next_frame_ - 1);
+  end.set_reason(reason);
+  end.set_message(message);
+  ended_ = true;
+  Send();
+}
+
+void FrameStreamCall::Send() {
+  writing_ = true;
+  last_write_ = Executor::Clock::now();
+  StartWrite(&message_);
+}
+
+void FrameStreamCall::Answer(const absl::Status& status) {
+  answered_ = true;
+  Finish(ToRpcStatus(status));
+}
+
+}  // namespace cleave

@@ -1,0 +1,65 @@
+#ifndef CLEAVE_SERVER_GATEWAY_RPC_FRAME_STREAM_CALL_H_
+#define CLEAVE_SERVER_GATEWAY_RPC_FRAME_STREAM_CALL_H_
+
+#include <grpcpp/grpcpp.h>
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+#include "absl/status/status.h"
+#include "cleave/v1/frame.pb.h"
+#include "server/gateway/drain.h"
+#include "server/gateway/executor.h"
+#include "server/gateway/rpc/session_call.h"
+#include "server/gateway/session_store.h"
+
+namespace cleave {
+
+// One StreamFrames call: reads committed frames from the session's log and sends them in chunks,
+// with one write under way at a time, so that a slow viewer costs one chunk of memory and nobody
+// else any time.
+class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesResponse>,
+                              public SessionCall {
+ public:
+  FrameStreamCall(Executor& executor, Drain& drain, SessionStore& sessions,
+                  const v1::StreamFramesRequest& request)
+      : SessionCall(executor, drain), sessions_(sessions), request_(request) {}
+
+  using SessionCall::Open;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  void Step() override;
+  absl::Status Begin();
+  absl::Status CheckRequest() const;
+  // Chooses the first frame; false while the session has none yet.
+  absl::StatusOr<bool> Start(const HostedSession::State& state);
+  // Sends the next piece of what is due.
+  absl::Status Continue(const HostedSession::State& state);
+  absl::Status LoadNextFrame();
+  void SendChunk(int64_t head_frame);
+  void SendEnd(v1::EndReason reason, const std::string& message);
+  void Send();
+  void Answer(const absl::Status& status);
+
+  SessionStore& sessions_;
+  const v1::StreamFramesRequest request_;
+  v1::StreamFramesResponse message_;
+
+  bool started_ = false;
+  bool ended_ = false;     // StreamEnd was sent
+  bool answered_ = false;  // Finish was called
+  int64_t next_frame_ = 0;
+  std::string frame_bytes_;  // of next_frame_, while it is being sent
+  size_t frame_sent_ = 0;    // bytes of it
+  Executor::Clock::time_point last_write_;
+  std::atomic<bool> writing_ = false;
+  std::atomic<bool> cancelled_ = false;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_SERVER_GATEWAY_RPC_FRAME_STREAM_CALL_H_

@@ -1,0 +1,117 @@
+#include "server/gateway/scene_intake.h"
+
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "core/base/faults.h"
+#include "core/base/status.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/procedural.h"
+#include "core/scene/scene.h"
+#include "core/scene/validate.h"
+#include "google/rpc/error_details.pb.h"
+#include "proto/convert/mesh.h"
+#include "proto/convert/scene.h"
+#include "server/gateway/errors.h"
+
+namespace cleave {
+namespace {
+
+bool MeshIsSound(const Faults& faults) {
+  for (const Fault& fault : faults.errors()) {
+    if (absl::StartsWith(fault.field, "mesh")) return false;
+  }
+  return true;
+}
+
+absl::Status MissingAsset(const std::string& sha256) {
+  absl::Status status =
+      MakeError(absl::StatusCode::kFailedPrecondition, "ASSET_MISSING",
+                absl::StrCat("the server has no asset ", sha256, "; upload it first"),
+                {{"asset", sha256}});
+  google::rpc::PreconditionFailure failure;
+  google::rpc::PreconditionFailure::Violation& violation = *failure.add_violations();
+  violation.set_type("ASSET_MISSING");
+  violation.set_subject(sha256);
+  violation.set_description("upload it first");
+  AddDetail(failure, status);
+  return status;
+}
+
+// The mesh in its own units. Faults of the source go to `faults`, and then there is no mesh.
+absl::StatusOr<std::optional<TetMesh>> ObtainMesh(const MeshSource& mesh, const AssetStore& assets,
+                                                  bool other_faults, Faults& faults) {
+  if (std::holds_alternative<MeshFile>(mesh.source)) {
+    faults.Error("mesh.file", "names a file of the client: upload it and send its asset");
+    return std::nullopt;
+  }
+  if (const auto* asset = std::get_if<MeshAsset>(&mesh.source)) {
+    if (!assets.Has(asset->sha256)) {
+      // With other faults it is one among them; alone it has its own code.
+      if (!other_faults) return MissingAsset(asset->sha256);
+      faults.Error("mesh.asset", "the server has no such asset; upload it first");
+      return std::nullopt;
+    }
+    CLEAVE_ASSIGN_OR_RETURN(TetMesh loaded, assets.LoadMesh(asset->sha256));
+    return loaded;
+  }
+  return std::visit(
+      [&](const auto& shape) -> absl::StatusOr<std::optional<TetMesh>> {
+        if constexpr (requires { BuildMesh(shape); }) {
+          CLEAVE_ASSIGN_OR_RETURN(TetMesh built, BuildMesh(shape));
+          return built;
+        } else {
+          faults.Error("mesh", "needs a source");
+          return std::nullopt;
+        }
+      },
+      mesh.source);
+}
+
+v1::Plan PlanModel(const TetMesh& mesh) {
+  v1::Plan plan;
+  plan.set_node_count(mesh.node_count());
+  plan.set_tet_count(mesh.tet_count());
+  plan.set_edge_count(BuildIncidence(mesh).edge_count());
+  return plan;
+}
+
+}  // namespace
+
+absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults& request_faults,
+                                          AssetStore& assets, bool store_mesh) {
+  Faults faults;
+  const Scene scene = SceneFromMessage(message, faults);
+  faults.Append("", ValidateScene(scene));
+  std::optional<TetMesh> mesh;
+  if (MeshIsSound(faults)) {
+    CLEAVE_ASSIGN_OR_RETURN(mesh, ObtainMesh(scene.mesh, assets,
+!(faults.ok() && request_faults.ok()), faults));
+  }
+  AcceptedScene accepted;
+  accepted.scene = message;
+  if (mesh.has_value()) {
+    if (store_mesh && faults.ok() && request_faults.ok() && !std::holds_alternative<MeshAsset>(scene.mesh.source)) {
+      CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(*mesh));
+      CLEAVE_ASSIGN_OR_RETURN(*accepted.scene.mutable_mesh()->mutable_asset(), assets.Add(bytes));
+    }
+    ScaleMesh(scene.mesh.unit_scale, *mesh);
+    const Faults mesh_faults = CheckAndOrientMesh(*mesh);
+    faults.Append("mesh.", mesh_faults);
+    if (mesh_faults.ok()) faults.Append("", ValidateSceneWithMesh(scene, *mesh));
+  }
+  Faults all = request_faults;
+  all.Append("scene.", faults);
+  if (!all.ok()) return MakeBadRequest("PARAM_OUT_OF_RANGE", "", all);
+  for (const Fault& warning : faults.warnings()) {
+    accepted.warnings.push_back(absl::StrCat(warning.field, ": ", warning.description));
+  }
+  accepted.plan = PlanModel(*mesh);
+  return accepted;
+}
+
+}  // namespace cleave
