@@ -1,0 +1,34 @@
+#include "client/cli/goal.h"
+
+#include <cmath>
+
+#include "core/scene/limits.h"
+
+namespace cleave {
+
+void AddGoalOptions(CLI::App& verb, GoalOptions& options) {
+  verb.add_option("--frames", options.frames, "Stop after this frame; default: the scene's count")
+      ->check(CLI::Range(int64_t{1}, limits::kMaxFrames))
+      ->type_name("N");
+  verb.add_option("--wall-budget", options.wall_seconds,
+                  "Stop at a frame's end after this much time on the clock")
+      ->check(CLI::Range(0.001, 1e9))
+      ->type_name("SECONDS");
+  verb.add_flag("--until-fracture", options.until_fracture,
+                "Stop after the first frame that breaks an edge");
+}
+
+v1::RunGoal GoalMessage(const GoalOptions& options) {
+  v1::RunGoal goal;
+  goal.set_until_frame(options.frames);
+  goal.set_stop_on_fracture(options.until_fracture);
+  if (options.wall_seconds > 0) {
+    const double whole = std::floor(options.wall_seconds);
+    goal.mutable_wall_budget()->set_seconds(static_cast<int64_t>(whole));
+    goal.mutable_wall_budget()->set_nanos(
+        static_cast<int32_t>((options.wall_seconds - whole) * 1e9));
+  }
+  return goal;
+}
+
+}  // namespace cleave

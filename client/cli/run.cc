@@ -1,0 +1,231 @@
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/console.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/follow.h"
+#include "client/cli/goal.h"
+#include "client/cli/json_line.h"
+#include "client/cli/program.h"
+#include "client/cli/progress.h"
+#include "client/cli/run_folder.h"
+#include "client/cli/scene_input.h"
+#include "client/cli/server_access.h"
+#include "client/cli/session_mesh.h"
+#include "client/cli/session_start.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+struct Options {
+  ServerOptions server;
+  GoalOptions goal;
+  std::string scene;
+  std::string out;
+  int threads = 0;
+  bool fresh = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+// The run that the folder knows, or a new one.
+class Run {
+ public:
+  Run(Program& program, const Options& options)
+      : program_(program), options_(options), folder_(options.out) {}
+
+  absl::Status Execute() {
+    CLEAVE_ASSIGN_OR_RETURN(input_, LoadScene(options_.scene));
+    PrintWarnings(input_.warnings);
+    if (options_.fresh) CLEAVE_RETURN_IF_ERROR(folder_.Clear());
+    CLEAVE_RETURN_IF_ERROR(folder_.Make());
+    CLEAVE_ASSIGN_OR_RETURN(access_,
+                            OpenServer(options_.server, folder_.server_data(), program_.interrupt));
+    CLEAVE_RETURN_IF_ERROR(FindOrCreateSession());
+    CLEAVE_RETURN_IF_ERROR(StartRunning());
+    CLEAVE_ASSIGN_OR_RETURN(const FollowResult result, RecordFrames());
+    CLEAVE_RETURN_IF_ERROR(KeepMesh(result));
+    CLEAVE_RETURN_IF_ERROR(KeepReports());
+    return Conclude(result);
+  }
+
+ private:
+  Client& client() { return *access_.client; }
+
+  absl::Status FindOrCreateSession() {
+    CLEAVE_ASSIGN_OR_RETURN(const v1::Scene scene,
+                            SceneForServer(client(), input_, options_.quiet || options_.json));
+    if (const auto earlier = folder_.EarlierSession()) {
+      CLEAVE_RETURN_IF_ERROR(folder_.CheckSameScene(scene));
+      auto session = client().GetSession(*earlier);
+      if (session.ok()) {
+        session_ = *std::move(session);
+        return absl::OkStatus();
+      }
+      // Deleted, or the run was killed before it was created: begin anew under the same name.
+      if (!absl::IsNotFound(session.status())) return session.status();
+      CLEAVE_RETURN_IF_ERROR(CreateSession(SessionId(*earlier), scene));
+      return absl::OkStatus();
+    }
+    return CreateSession(NewSessionId(options_.scene), scene);
+  }
+
+  absl::Status CreateSession(const std::string& id, const v1::Scene& scene) {
+    CLEAVE_RETURN_IF_ERROR(folder_.Begin(SessionName(id), scene));
+    v1::CreateSessionRequest request;
+    request.set_session_id(id);
+    *request.mutable_scene() = scene;
+    request.set_threads(options_.threads);
+    auto response = client().CreateSession(std::move(request));
+    if (!response.ok()) return WithLines(input_.file, response.status());
+    session_ = std::move(*response->mutable_session());
+    return absl::OkStatus();
+  }
+
+  absl::Status StartRunning() {
+    head_ = session_.head_frame();
+    if (session_.state() == v1::SESSION_STATE_FAILED ||
+        session_.state() == v1::SESSION_STATE_RUNNING)
+      return absl::OkStatus();  // the stream tells
+    const int64_t goal =
+        options_.goal.frames > 0 ? options_.goal.frames : input_.scene.timing.frame_count;
+    session_.set_goal_frame(goal);
+    if (head_ >= goal) return absl::OkStatus();
+    if (head_ > 0 && !options_.quiet && !options_.json)
+      PrintNote(absl::StrCat("going on after frame ", head_, " of ", session_.name()));
+    auto running = client().RunSession(session_.name(), GoalMessage(options_.goal));
+    if (!running.ok()) return running.status();
+    session_ = *std::move(running);
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<FollowResult> RecordFrames() {
+    CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<Recorder> recorder,
+                            Recorder::Open(folder_.frames()));
+    FollowOptions follow;
+    follow.session = session_.name();
+    follow.goal_frame = session_.goal_frame();
+    follow.head_frame = head_;
+    follow.pause_on_signal = true;
+    follow.json = options_.json;
+    follow.quiet = options_.quiet;
+    follow.recorder = recorder.get();
+    auto result = Follow(client(), program_.interrupt, follow);
+    const absl::Status finished = recorder->Finish();
+    if (!result.ok() && access_.embedded != nullptr)
+      CLEAVE_RETURN_IF_ERROR(access_.embedded->Check());  // its end is the better reason
+    if (result.ok()) CLEAVE_RETURN_IF_ERROR(finished);
+    return result;
+  }
+
+  absl::Status KeepMesh(const FollowResult& result) {
+    if (std::filesystem::exists(folder_.mesh())) return absl::OkStatus();
+    CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh,
+                            SessionMesh(client(), session_.name(), result.mesh_asset));
+    return folder_.WriteMesh(mesh);
+  }
+
+  // Only an embedded server's are at hand.
+  absl::Status KeepReports() {
+    if (access_.embedded == nullptr) return absl::OkStatus();
+    const std::string source =
+        absl::StrCat(folder_.server_data(), "/", session_.name(), "/reports.jsonl");
+    std::error_code error;
+    if (!std::filesystem::exists(source, error)) return absl::OkStatus();
+    std::filesystem::copy_file(source, folder_.reports(),
+                               std::filesystem::copy_options::overwrite_existing, error);
+    if (error) return absl::InternalError(absl::StrCat(source, ": ", error.message()));
+    return absl::OkStatus();
+  }
+
+  absl::Status Conclude(const FollowResult& result) {
+    const bool reached = result.last_frame >= session_.goal_frame();
+    if (options_.json) {
+      PrintResult(JsonLine()
+                      .Add("event", "end")
+                      .Add("session", session_.name())
+                      .Add("last_frame", result.last_frame)
+                      .Add("goal_frame", session_.goal_frame())
+                      .Add("time", result.last_time)
+                      .Add("broken_edges", result.broken_edges)
+                      .Add("pieces", result.pieces)
+                      .Add("interrupted", result.interrupted && !reached)
+                      .Add("frames", folder_.frames())
+                      .Str());
+    }
+    if (result.interrupted && !reached)
+      return absl::CancelledError(absl::StrCat("paused after frame ", result.last_frame, " of ",
+                                               session_.goal_frame(), "; to go on:\n  ",
+                                               ResumeCommand()));
+    CLEAVE_RETURN_IF_ERROR(StatusOfEnd(session_.name(), result.end));
+    if (!options_.json) PrintFiles();
+    if (!options_.quiet && !options_.json)
+      PrintNote(absl::StrCat("frame ", result.last_frame, ", ", result.broken_edges,
+                             " broken edges, ", result.pieces,
+                             result.pieces == 1 ? " piece" : " pieces"));
+    return absl::OkStatus();
+  }
+
+  void PrintFiles() const {
+    for (const std::string& path : {folder_.frames(), folder_.mesh(), folder_.reports()})
+      if (std::filesystem::exists(path)) PrintResult(path);
+  }
+
+  std::string ResumeCommand() const {
+    std::string command = absl::StrCat("cleave run ", options_.scene, " --out ", options_.out);
+    if (!options_.server.address.empty())
+      absl::StrAppend(&command, " --server ", options_.server.address);
+    return command;
+  }
+
+  Program& program_;
+  const Options& options_;
+  const RunFolder folder_;
+  SceneInput input_;
+  ServerAccess access_;
+  v1::Session session_;
+  int64_t head_ = -1;
+};
+
+}  // namespace
+
+void AddRun(CLI::App& app, Program& program) {
+  CLI::App* verb = app.add_subcommand("run", "Simulate a scene and record its frames");
+  auto options = std::make_shared<Options>();
+  verb->add_option("scene", options->scene, "Scene file: .scene.json or .textproto")
+      ->required()
+      ->type_name("SCENE");
+  verb->add_option("--out", options->out,
+                   "Folder for the results; running again with the same one goes on where the run "
+                   "stopped. Default: out/ and the scene's name")
+      ->type_name("DIR");
+  AddServerOptions(*verb, options->server, false);
+  AddGoalOptions(*verb, options->goal);
+  verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  verb->add_flag("--fresh", options->fresh, "Throw an earlier run in DIR away first");
+  verb->add_flag("--json", options->json, "A JSON line a frame on stdout, and one at the end");
+  verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
+  verb->footer(
+      "Leaves in DIR: frames.clv (the recorded frames), mesh.pb (the mesh, for `cleave export`\n"
+      "and `cleave preview`), reports.jsonl (a line of numbers a frame; private server only).\n"
+      "Their paths are printed on stdout, one a line. Ctrl-C pauses after the frame in work,\n"
+      "twice gives that frame up; the same command goes on.\n\n"
+      "Examples:\n"
+      "  cleave run bar.scene.json                          a private server, into out/bar\n"
+      "  cleave run bar.scene.json --out wedge7 --frames 12\n"
+      "  cleave run bar.scene.json --server farm-3:7420     on a server that runs already\n");
+  verb->callback([options, &program] {
+    if (options->out.empty()) {
+      std::string stem = std::filesystem::path(options->scene).filename().string();
+      options->out = absl::StrCat("out/", stem.substr(0, stem.find('.')));
+    }
+    program.action = [options](Program& shared) { return Run(shared, *options).Execute(); };
+  });
+}
+
+}  // namespace cleave

@@ -1,0 +1,61 @@
+#include "client/cli/run_folder.h"
+
+#include <google/protobuf/text_format.h>
+#include <google/protobuf/util/message_differencer.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "client/io/scene/scene_file.h"
+#include "client/io/series/write_aside.h"
+#include "core/base/status.h"
+#include "proto/convert/mesh.h"
+
+namespace cleave {
+
+absl::Status RunFolder::Make() const { return MakeDirectories(path_); }
+
+std::optional<std::string> RunFolder::EarlierSession() const {
+  std::ifstream in(session());
+  std::string name;
+  if (!std::getline(in, name) || name.empty()) return std::nullopt;
+  return name;
+}
+
+absl::Status RunFolder::CheckSameScene(const v1::Scene& wanted) const {
+  const auto earlier = ReadSceneFile(scene());
+  if (earlier.ok() && google::protobuf::util::MessageDifferencer::Equals(earlier->scene, wanted))
+    return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat(path_,
+                   ": holds a run of another scene; choose another --out, or pass --fresh "
+                   "to throw that run away"));
+}
+
+absl::Status RunFolder::Begin(const std::string& name, const v1::Scene& sent) const {
+  std::string text;
+  if (!google::protobuf::TextFormat::PrintToString(sent, &text))
+    return absl::InternalError("the scene could not be written as text");
+  CLEAVE_RETURN_IF_ERROR(WriteAside(scene(), text));
+  return WriteAside(session(), absl::StrCat(name, "\n"));
+}
+
+absl::Status RunFolder::WriteMesh(const TetMesh& body) const {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(body));
+  return WriteAside(mesh(), bytes);
+}
+
+absl::Status RunFolder::Clear() const {
+  for (const std::string& item : {session(), scene(), frames(), mesh(), reports(), server_data()}) {
+    std::error_code error;
+    std::filesystem::remove_all(item, error);
+    if (error) return absl::InternalError(absl::StrCat(item, ": ", error.message()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace cleave

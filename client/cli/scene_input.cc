@@ -1,0 +1,143 @@
+#include "client/cli/scene_input.h"
+
+#include <fstream>
+#include <sstream>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "absl/strings/cord.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "client/cpp/rpc_error.h"
+#include "client/io/mesh/file_bytes.h"
+#include "client/io/mesh/mesh_file.h"
+#include "core/base/status.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/procedural.h"
+#include "core/scene/validate.h"
+#include "proto/convert/mesh.h"
+#include "proto/convert/scene.h"
+
+namespace cleave {
+namespace {
+
+bool IsSceneName(const std::string& path) {
+  for (const char* ending : {".json", ".textproto", ".txtpb", ".pbtxt"})
+    if (absl::EndsWith(path, ending)) return true;
+  return false;
+}
+
+std::string DescribeFaults(const std::string& path, const Faults& faults) {
+  std::string text =
+      absl::StrJoin(faults.errors(), "\n", [&path](std::string* out, const Fault& fault) {
+        absl::StrAppend(out, path, ": ", fault.field, fault.field.empty() ? "" : ": ",
+                        fault.description);
+      });
+  const long more = faults.error_count() - static_cast<long>(faults.errors().size());
+  if (more > 0) absl::StrAppend(&text, "\n", path, ": and ", more, " faults more");
+  return text;
+}
+
+void AppendWarnings(const std::string& prefix, const Faults& faults, std::vector<Fault>& all) {
+  for (const Fault& warning : faults.warnings())
+    all.push_back({absl::StrCat(prefix, warning.field), warning.description});
+}
+
+// The rules of the scene alone. A file as mesh stands for the asset that it will be.
+absl::Status CheckScene(SceneInput& input) {
+  Faults faults;
+  input.scene = SceneFromMessage(input.file.scene, faults);
+  Scene as_sent = input.scene;
+  if (std::holds_alternative<MeshFile>(as_sent.mesh.source))
+    as_sent.mesh.source = MeshAsset{std::string(64, '0')};
+  faults.Append("", ValidateScene(as_sent));
+  AppendWarnings("", faults, input.warnings);
+  if (faults.ok()) return absl::OkStatus();
+  return absl::InvalidArgumentError(input.file.Describe(faults.errors()));
+}
+
+absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
+  TetMesh mesh = *input.mesh;
+  ScaleMesh(input.scene.mesh.unit_scale, mesh);
+  const Faults mesh_faults = CheckAndOrientMesh(mesh);
+  AppendWarnings(absl::StrCat(mesh_path, ": "), mesh_faults, input.warnings);
+  if (!mesh_faults.ok()) return absl::InvalidArgumentError(DescribeFaults(mesh_path, mesh_faults));
+  const Faults scene_faults = ValidateSceneWithMesh(input.scene, mesh);
+  AppendWarnings("", scene_faults, input.warnings);
+  if (!scene_faults.ok())
+    return absl::InvalidArgumentError(input.file.Describe(scene_faults.errors()));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<SceneInput> LoadScene(const std::string& path) {
+  SceneInput input;
+  CLEAVE_ASSIGN_OR_RETURN(input.file, ReadSceneFile(path));
+  CLEAVE_RETURN_IF_ERROR(CheckScene(input));
+  const std::string mesh_path = MeshPath(input.file);
+  if (mesh_path.empty()) return input;
+  CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
+  CLEAVE_RETURN_IF_ERROR(CheckWithMesh(input, mesh_path));
+  return input;
+}
+
+absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input) {
+  absl::StatusOr<TetMesh> mesh = std::visit(
+      [&input](const auto& source) -> absl::StatusOr<TetMesh> {
+        using Source = std::decay_t<decltype(source)>;
+        if constexpr (std::is_same_v<Source, MeshFile>) {
+          return *input.mesh;
+        } else if constexpr (std::is_same_v<Source, MeshAsset>) {
+          return absl::FailedPreconditionError(
+              absl::StrCat(input.file.path, ": mesh.asset is known to servers only"));
+        } else if constexpr (std::is_same_v<Source, std::monostate>) {
+          return absl::InvalidArgumentError(absl::StrCat(input.file.path, ": has no mesh"));
+        } else {
+          return BuildMesh(source);
+        }
+      },
+      input.scene.mesh.source);
+  if (!mesh.ok()) return mesh;
+  ScaleMesh(input.scene.mesh.unit_scale, *mesh);
+  return mesh;
+}
+
+absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale) {
+  if (IsSceneName(path)) {
+    CLEAVE_ASSIGN_OR_RETURN(const SceneFile file, ReadSceneFile(path));
+    SceneInput input;
+    input.file = file;
+    Faults faults;
+    input.scene = SceneFromMessage(file.scene, faults);
+    if (!faults.ok()) return absl::InvalidArgumentError(file.Describe(faults.errors()));
+    const std::string mesh_path = MeshPath(file);
+    if (!mesh_path.empty()) {
+      CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
+    }
+    return SceneMesh(input);
+  }
+  if (absl::EndsWith(path, ".pb")) {
+    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFileBytes(path));
+    auto mesh = ParseMesh(bytes);
+    if (mesh.ok()) return mesh;
+    return absl::Status(mesh.status().code(), absl::StrCat(path, ": ", mesh.status().message()));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh, ReadMeshFile(path));
+  ScaleMesh(unit_scale, mesh);
+  return mesh;
+}
+
+absl::Status WithLines(const SceneFile& file, const absl::Status& status) {
+  const std::vector<Fault> faults = FaultsOf(status);
+  if (faults.empty()) return status;
+  absl::Status named(status.code(), file.Describe(faults));
+  status.ForEachPayload([&named](absl::string_view type, const absl::Cord& payload) {
+    named.SetPayload(type, payload);
+  });
+  return named;
+}
+
+}  // namespace cleave

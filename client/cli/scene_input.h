@@ -1,0 +1,43 @@
+#ifndef CLEAVE_CLIENT_CLI_SCENE_INPUT_H_
+#define CLEAVE_CLIENT_CLI_SCENE_INPUT_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cleave/v1/scene.pb.h"
+#include "client/io/scene/scene_file.h"
+#include "core/base/faults.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/scene/scene.h"
+
+namespace cleave {
+
+// A scene file, its mesh file where it names one, and what the local checks say of them.
+struct SceneInput {
+  SceneFile file;
+  Scene scene;
+  std::optional<TetMesh> mesh;  // as in the mesh file: not scaled, not oriented
+  std::vector<Fault> warnings;
+};
+
+// Reads and checks a scene and its mesh file: all that can be known without a server. Errors:
+// every fault of the scene with its line, every fault of the mesh with its file, one a line.
+absl::StatusOr<SceneInput> LoadScene(const std::string& path);
+
+// The mesh (m, oriented) of a scene: its file's, or built where it is procedural.
+// FailedPrecondition when it is an asset, which only a server has.
+absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input);
+
+// A mesh for `cleave inspect` and exporters: a mesh file, a scene file (its mesh, in metres) or the
+// mesh.pb of a run. `unit_scale` applies to mesh files only. Not checked.
+absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale);
+
+// The status of a call about this scene, with the lines of the scene file where fields are named.
+absl::Status WithLines(const SceneFile& file, const absl::Status& status);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_CLI_SCENE_INPUT_H_

@@ -1,0 +1,109 @@
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/console.h"
+#include "client/cli/follow.h"
+#include "client/cli/goal.h"
+#include "client/cli/program.h"
+#include "client/cli/run_folder.h"
+#include "client/cli/server_access.h"
+#include "client/cli/session_mesh.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+struct Options {
+  ServerOptions server;
+  GoalOptions goal;
+  std::string session;
+  std::string out;
+  int64_t from = 0;
+  bool run = false;
+  bool stay = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+absl::Status Record(Client& client, Interrupt& interrupt, const Options& options,
+                    FollowOptions follow) {
+  const RunFolder folder(options.out);
+  std::unique_ptr<Recorder> recorder;
+  if (!options.out.empty()) {
+    CLEAVE_RETURN_IF_ERROR(folder.Make());
+    CLEAVE_ASSIGN_OR_RETURN(recorder, Recorder::Open(folder.frames()));
+    follow.recorder = recorder.get();
+  }
+  const auto result = Follow(client, interrupt, follow);
+  if (recorder != nullptr) CLEAVE_RETURN_IF_ERROR(recorder->Finish());
+  if (!result.ok()) return result.status();
+  if (recorder != nullptr) {
+    if (!std::filesystem::exists(folder.mesh())) {
+      CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh,
+                              SessionMesh(client, follow.session, result->mesh_asset));
+      CLEAVE_RETURN_IF_ERROR(folder.WriteMesh(mesh));
+    }
+    if (!options.json) {
+      PrintResult(folder.frames());
+      PrintResult(folder.mesh());
+    }
+  }
+  if (result->interrupted && result->end.reason() == v1::END_REASON_UNSPECIFIED)
+    return absl::CancelledError(absl::StrCat("left ", follow.session, " after frame ",
+                                             result->last_frame, "; it goes on without a viewer"));
+  return StatusOfEnd(follow.session, result->end);
+}
+
+absl::Status Watch(Program& program, const Options& options) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<Client> client,
+                          ConnectServer(options.server, program.interrupt));
+  CLEAVE_ASSIGN_OR_RETURN(v1::Session session, client->GetSession(SessionName(options.session)));
+  const int64_t head = session.head_frame();
+  if (options.run) {
+    CLEAVE_ASSIGN_OR_RETURN(session, client->RunSession(session.name(), GoalMessage(options.goal)));
+  }
+  FollowOptions follow;
+  follow.session = SessionName(options.session);
+  follow.first_frame = options.from;
+  follow.stay = options.stay;
+  follow.goal_frame = session.goal_frame();
+  follow.head_frame = head;
+  follow.json = options.json;
+  follow.quiet = options.quiet;
+  return Record(*client, program.interrupt, options, follow);
+}
+
+}  // namespace
+
+void AddWatch(CLI::App& app, Program& program) {
+  CLI::App* verb =
+      app.add_subcommand("watch", "Follow a session that runs or has ended, and record it");
+  auto options = std::make_shared<Options>();
+  verb->add_option("session", options->session, "Name of the session, as `cleave list` shows it")
+      ->required()
+      ->type_name("SESSION");
+  AddServerOptions(*verb, options->server, true);
+  verb->add_option("--out", options->out, "Folder for the recording: frames.clv and mesh.pb")
+      ->type_name("DIR");
+  verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
+      ->check(CLI::Range(int64_t{0}, int64_t{1} << 40))
+      ->type_name("FRAME");
+  verb->add_flag("--run", options->run, "Let a paused session run on first");
+  AddGoalOptions(*verb, options->goal);
+  verb->add_flag("--stay", options->stay, "Stay when the run is over, for frames to come");
+  verb->add_flag("--json", options->json, "A JSON line a frame on stdout");
+  verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
+  verb->footer(
+      "Ctrl-C leaves; the session goes on. With --out, a later `watch` with the same folder goes\n"
+      "on where the recording ends.\n\n"
+      "Examples:\n"
+      "  cleave watch bar-3f2a1c --server farm-3:7420 --out out/bar\n"
+      "  cleave watch bar-3f2a1c --server farm-3:7420 --run      wake a paused session\n");
+  verb->callback([options, &program] {
+    program.action = [options](Program& shared) { return Watch(shared, *options); };
+  });
+}
+
+}  // namespace cleave

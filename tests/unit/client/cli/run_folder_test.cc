@@ -1,0 +1,48 @@
+#include "client/cli/run_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+
+namespace cleave {
+namespace {
+
+class RunFolderTest : public testing::Test {
+ protected:
+  RunFolderTest() {
+    std::filesystem::remove_all(folder_.path());
+    EXPECT_TRUE(folder_.Make().ok());
+  }
+  ~RunFolderTest() override { std::filesystem::remove_all(folder_.path()); }
+  const RunFolder folder_{
+      absl::StrCat(testing::TempDir(), "run_folder_test.",
+                   testing::UnitTest::GetInstance()->current_test_info()->name())};
+};
+
+TEST_F(RunFolderTest, EarlierRunIsFoundAgainWithItsScene) {
+  EXPECT_FALSE(folder_.EarlierSession().has_value());
+  v1::Scene scene;
+  scene.add_gravity(-0.1);
+  scene.add_materials()->set_youngs_modulus(1.0 / 3);
+  ASSERT_TRUE(folder_.Begin("sessions/rod-1", scene).ok());
+  EXPECT_EQ(*folder_.EarlierSession(), "sessions/rod-1");
+  EXPECT_TRUE(folder_.CheckSameScene(scene).ok());
+  scene.set_seed(1);
+  EXPECT_TRUE(absl::IsFailedPrecondition(folder_.CheckSameScene(scene)));
+}
+
+TEST_F(RunFolderTest, ClearRemovesOnlyWhatIsItsOwn) {
+  ASSERT_TRUE(folder_.Begin("sessions/rod-1", v1::Scene()).ok());
+  std::filesystem::create_directories(folder_.server_data() + "/sessions");
+  std::ofstream(folder_.path() + "/notes.txt") << "keep";
+  ASSERT_TRUE(folder_.Clear().ok());
+  EXPECT_FALSE(folder_.EarlierSession().has_value());
+  EXPECT_FALSE(std::filesystem::exists(folder_.server_data()));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() + "/notes.txt"));
+}
+
+}  // namespace
+}  // namespace cleave
