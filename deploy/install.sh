@@ -7,7 +7,7 @@ packages=(
   libgrpc++-dev protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev libeigen3-dev libtbb-dev libzstd-dev libssl-dev libxxhash-dev
   libcli11-dev                                     # verbs and help of the command line
-  protobuf-compiler-grpc python3-grpcio python3-protobuf python3-numpy   # the Python client and its test
+  python3-grpcio python3-protobuf                  # the Python client
   libgtest-dev libgmock-dev python3                  # tests
   python3-numpy python3-zstandard                  # the Python stream decoder
 )
