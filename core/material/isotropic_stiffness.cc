@@ -56,12 +56,14 @@ void SortColumns(Double4 key[3], Matrix3<Double4>& v, int p, int q) {
 
 }  // namespace
 
-SignedSvd ComputeSvd(const Matrix3<Double4>& f) {
+SignedSvd ComputeSvd(const Matrix3<Double4>& g) {
   SignedSvd svd;
-  Matrix3<Double4> c;
+  Matrix3<Double4> c;  // F^T F - I, whose eigenvalues are s^2 - 1
   for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j)
-      c(i, j) = c(j, i) = f(0, i) * f(0, j) + f(1, i) * f(1, j) + f(2, i) * f(2, j);
+    for (int j = i; j < 3; ++j) {
+      c(i, j) = c(j, i) =
+          g(i, j) + g(j, i) + (g(0, i) * g(0, j) + g(1, i) * g(1, j) + g(2, i) * g(2, j));
+    }
   }
   DiagonaliseSymmetric(c, svd.v);
   Double4 key[3] = {c(0, 0), c(1, 1), c(2, 2)};
@@ -69,7 +71,10 @@ SignedSvd ComputeSvd(const Matrix3<Double4>& f) {
   SortColumns(key, svd.v, 0, 2);
   SortColumns(key, svd.v, 1, 2);
 
-  const Matrix3<Double4> b = f * svd.v;
+  Matrix3<Double4> b = g * svd.v;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) b(i, j) += svd.v(i, j);
+  }
   Matrix3<Double4>& u = svd.u;
   const Double4 length0 = Sqrt(b(0, 0) * b(0, 0) + b(1, 0) * b(1, 0) + b(2, 0) * b(2, 0));
   const Int64x4 collapsed = !(length0 > 1e-150);
@@ -92,8 +97,22 @@ SignedSvd ComputeSvd(const Matrix3<Double4>& f) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     u(i, 2) = u(j, 0) * u(k, 1) - u(k, 0) * u(j, 1);
   }
-  for (int k = 0; k < 3; ++k) svd.s[k] = u(0, k) * b(0, k) + u(1, k) * b(1, k) + u(2, k) * b(2, k);
+  for (int k = 0; k < 3; ++k) {
+    svd.s[k] = u(0, k) * b(0, k) + u(1, k) * b(1, k) + u(2, k) * b(2, k);
+    svd.strain[k] = svd.s[k] > 0.5 ? key[k] / (svd.s[k] + 1.0) : svd.s[k] - 1.0;
+  }
   return svd;
+}
+
+Matrix3<Double4> FromPrincipal(const SignedSvd& svd, const Double4 values[3]) {
+  Matrix3<Double4> result;
+  for (int i = 0; i < 3; ++i) {
+    const Double4 row[3] = {svd.u(i, 0) * values[0], svd.u(i, 1) * values[1],
+                            svd.u(i, 2) * values[2]};
+    for (int j = 0; j < 3; ++j)
+      result(i, j) = row[0] * svd.v(j, 0) + row[1] * svd.v(j, 1) + row[2] * svd.v(j, 2);
+  }
+  return result;
 }
 
 void ProjectToSemidefinite(StiffnessSpectrum& spectrum) {

@@ -3,6 +3,7 @@
 
 #include "core/base/double4.h"
 #include "core/base/matrix3.h"
+#include "core/material/moduli.h"
 
 namespace cleave {
 
@@ -11,12 +12,17 @@ namespace cleave {
 struct SignedSvd {
   Matrix3<Double4> u;
   Double4 s[3];
+  Double4 strain[3];  // s - 1, with the digits that small strains lose in s
   Matrix3<Double4> v;
 };
 
-// Precondition: finite entries. Singular values below 1e-8 of the largest have few correct digits;
-// U and V are orthogonal to rounding for every F, the zero matrix included.
-SignedSvd ComputeSvd(const Matrix3<Double4>& deformation_gradient);
+// Of F = I + G, from G. Precondition: finite entries. Singular values below 1e-8 of the largest
+// have few correct digits; U and V are orthogonal to rounding for every F, the zero matrix
+// included.
+SignedSvd ComputeSvd(const Matrix3<Double4>& displacement_gradient);
+
+// U diag(values) V^T.
+Matrix3<Double4> FromPrincipal(const SignedSvd& svd, const Double4 values[3]);
 
 // The second derivative of an isotropic energy in the frame of the singular values: how the stress
 // in that frame, Pa, follows a change of the deformation gradient in that frame.
@@ -27,6 +33,19 @@ struct StiffnessSpectrum {
   Double4 symmetric[3];
   Double4 skew[3];
 };
+
+// In laws of singular values the stress kinks where s_i + s_j = 0, and the skew eigenvalue, a
+// quotient by that sum, has no bound. This one keeps it finite, Pa. Source: method note, section 5.
+inline Double4 SkewStiffnessCap(const LameConstants<Double4>& lame) {
+  return 1e3 * (lame.lambda + lame.mu);
+}
+
+// dividend / divisor within [-cap, cap]. Preconditions: divisor >= 0, finite dividend, cap > 0.
+inline Double4 BoundedQuotient(Double4 dividend, Double4 divisor, Double4 cap) {
+  const Int64x4 steep = !(Abs(dividend) < cap * divisor);
+  const Double4 bound = dividend < 0 ? -cap : cap;
+  return steep ? bound : dividend / (steep ? Splat(1) : divisor);
+}
 
 // Replaces negative eigenvalues by 0: the nearest positive semidefinite second derivative.
 // Source: method note, section 5.

@@ -16,17 +16,17 @@ namespace cleave {
 // would subtract large numbers. T is double or Double4. Source: Smith, de Goes and Kim, Stable
 // Neo-Hookean Flesh Simulation (2018), in the form of the method note, section 5.
 struct StableNeoHookean {
-  // J - 1 and cof G; shared by energy and stress.
+  // Shared by energy and stress.
   template <typename T>
-  struct Volume {
+  struct Kinematics {
     Matrix3<T> cofactor;  // of G
     T trace;              // of G
     T change;             // J - 1
     T determinant;        // of G
   };
   template <typename T>
-  static Volume<T> VolumeOf(const Matrix3<T>& g) {
-    Volume<T> volume;
+  static Kinematics<T> KinematicsOf(const Matrix3<T>& g) {
+    Kinematics<T> volume;
     volume.cofactor = Cofactor(g);
     volume.trace = Trace(g);
     volume.determinant = g(0, 0) * volume.cofactor(0, 0) + g(0, 1) * volume.cofactor(0, 1) +
@@ -37,7 +37,7 @@ struct StableNeoHookean {
 
   // J/m^3.
   template <typename T>
-  static T Energy(const Matrix3<T>& g, const Volume<T>& volume, const LameConstants<T>& lame) {
+  static T Energy(const Matrix3<T>& g, const Kinematics<T>& volume, const LameConstants<T>& lame) {
     T squares = g(0, 0) * g(0, 0);
     for (int k = 1; k < 9; ++k) squares += g(k / 3, k % 3) * g(k / 3, k % 3);
     return 0.5 * (lame.mu * (squares - 2.0 * (Trace(volume.cofactor) + volume.determinant)) +
@@ -46,7 +46,7 @@ struct StableNeoHookean {
 
   // First Piola-Kirchhoff stress, Pa.
   template <typename T>
-  static Matrix3<T> Stress(const Matrix3<T>& g, const Volume<T>& volume,
+  static Matrix3<T> Stress(const Matrix3<T>& g, const Kinematics<T>& volume,
                            const LameConstants<T>& lame) {
     const T pressure = (lame.lambda + lame.mu) * volume.change;
     Matrix3<T> stress;
@@ -64,9 +64,10 @@ struct StableNeoHookean {
     return stress;
   }
 
-  // Second derivative for singular values s, not projected.
-  static StiffnessSpectrum Spectrum(const Double4 s[3], const LameConstants<Double4>& lame) {
+  // Second derivative at the singular values, not projected.
+  static StiffnessSpectrum Spectrum(const SignedSvd& svd, const LameConstants<Double4>& lame) {
     StiffnessSpectrum spectrum;
+    const Double4* s = svd.s;
     const Double4 bulk = lame.lambda + lame.mu;
     const Double4 c = bulk * (s[0] * s[1] * s[2] - 1.0) - lame.mu;
     for (int k = 0; k < 3; ++k) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -31,6 +32,39 @@ std::vector<int32_t> NodesOf(const std::string& name, const Scene& scene, const 
   for (int32_t& node : nodes) node = order.new_node[static_cast<size_t>(node)];
   std::sort(nodes.begin(), nodes.end());
   return nodes;
+}
+
+// The elastic laws that the materials follow, each once.
+std::set<ElasticLaw> LawsOf(const std::vector<Material>& materials) {
+  std::set<ElasticLaw> laws;
+  for (const Material& material : materials) laws.insert(material.law);
+  return laws;
+}
+
+// The tets whose material follows `law`, ascending.
+std::vector<int32_t> TetsOf(const std::vector<Material>& materials,
+                            const std::vector<int32_t>& material_of, ElasticLaw law) {
+  std::vector<int32_t> tets;
+  for (size_t tet = 0; tet < material_of.size(); ++tet) {
+    if (materials[static_cast<size_t>(material_of[tet])].law == law)
+      tets.push_back(static_cast<int32_t>(tet));
+  }
+  return tets;
+}
+
+// Elastic constants of the tets: one record where the scene has one material, else one each.
+std::vector<LameConstants<double>> LameOf(const std::vector<Material>& materials,
+                                          const std::vector<int32_t>& material_of,
+                                          const std::vector<int32_t>& tets) {
+  std::vector<LameConstants<double>> of_material;
+  for (const Material& material : materials)
+    of_material.push_back(ToLame(material.youngs_modulus, material.poisson_ratio));
+  if (of_material.size() == 1) return of_material;
+  std::vector<LameConstants<double>> of_tet;
+  of_tet.reserve(tets.size());
+  for (const int32_t tet : tets)
+    of_tet.push_back(of_material[static_cast<size_t>(material_of[static_cast<size_t>(tet)])]);
+  return of_tet;
 }
 
 double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
@@ -90,18 +124,15 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       model.masses[static_cast<size_t>(node)] += density * volume / 4;
   }
 
-  // Elasticity: one record where there is one material.
-  std::vector<LameConstants<double>> lame;
-  for (const Material& material : scene.materials)
-    lame.push_back(ToLame(material.youngs_modulus, material.poisson_ratio));
-  if (lame.size() > 1) {
-    std::vector<LameConstants<double>> of_tet(material_of.size());
-    for (size_t tet = 0; tet < of_tet.size(); ++tet)
-      of_tet[tet] = lame[static_cast<size_t>(material_of[tet])];
-    lame = std::move(of_tet);
+  // Elasticity, a term a law.
+  for (const ElasticLaw law : LawsOf(scene.materials)) {
+    std::vector<int32_t> tets = TetsOf(scene.materials, material_of, law);
+    if (tets.empty()) continue;
+    std::vector<LameConstants<double>> lame = LameOf(scene.materials, material_of, tets);
+    if (tets.size() == material_of.size()) tets.clear();  // all of the mesh
+    model.tet_terms.push_back(
+        MakeElasticTerm(law, *model.mesh, *model.incidence, std::move(tets), std::move(lame)));
   }
-  model.tet_terms.push_back(
-      MakeStableNeoHookeanTerm(*model.mesh, *model.incidence, std::move(lame)));
 
   model.quality = scene.quality;
 

@@ -2,7 +2,10 @@
 
 #include <utility>
 
+#include "core/material/corotated_linear.h"
+#include "core/material/invertible_neo_hookean.h"
 #include "core/material/isotropic_stiffness.h"
+#include "core/material/st_venant_kirchhoff.h"
 #include "core/material/stable_neo_hookean.h"
 #include "core/model/tet_batches.h"
 
@@ -80,9 +83,9 @@ void ScatterBlocks(const TetBatch& batch, int lanes, BatchBlocks& blocks, float*
 template <typename Law>
 class ElasticTerm final : public TetTerm {
  public:
-  ElasticTerm(const TetMesh& mesh, const Incidence& incidence,
+  ElasticTerm(const TetMesh& mesh, const Incidence& incidence, std::vector<int32_t> tets,
               std::vector<LameConstants<double>> lame)
-      : mesh_(mesh), tets_(BuildTetBatches(mesh, incidence)) {
+      : mesh_(mesh), tets_(BuildTetBatches(mesh, incidence, std::move(tets))) {
     const bool uniform = lame.size() == 1;
     lame_stride_ = uniform ? 0 : 1;
     lame_.resize(uniform ? 1 : tets_.batches.size());
@@ -101,6 +104,7 @@ class ElasticTerm final : public TetTerm {
 
   int64_t bytes() const override {
     return static_cast<int64_t>(tets_.batches.size() * sizeof(TetBatch) +
+                                tets_.tets.size() * sizeof(int32_t) +
                                 lame_.size() * sizeof(LameConstants<Double4>));
   }
 
@@ -110,9 +114,9 @@ class ElasticTerm final : public TetTerm {
       for (int64_t b = begin; b < end; ++b) {
         const TetBatch& batch = tets_.batches[static_cast<size_t>(b)];
         const Matrix3<Double4> g = DisplacementGradient(batch, displacements.data());
-        const auto volume = Law::VolumeOf(g);
-        energy += batch.volume * Law::Energy(g, volume, lame(b));
-        const Matrix3<Double4> stress = Law::Stress(g, volume, lame(b));
+        const auto kinematics = Law::KinematicsOf(g);
+        energy += batch.volume * Law::Energy(g, kinematics, lame(b));
+        const Matrix3<Double4> stress = Law::Stress(g, kinematics, lame(b));
         Double4 force[4][4];  // [vertex][axis], then [vertex][lane]
         for (int axis = 0; axis < 3; ++axis) {
           for (int vertex = 1; vertex < 4; ++vertex) {
@@ -146,10 +150,8 @@ class ElasticTerm final : public TetTerm {
       BatchBlocks element;
       for (int64_t b = begin; b < end; ++b) {
         const TetBatch& batch = tets_.batches[static_cast<size_t>(b)];
-        Matrix3<Double4> f = DisplacementGradient(batch, displacements.data());
-        for (int i = 0; i < 3; ++i) f(i, i) += 1.0;
-        const SignedSvd svd = ComputeSvd(f);
-        StiffnessSpectrum spectrum = Law::Spectrum(svd.s, lame(b));
+        const SignedSvd svd = ComputeSvd(DisplacementGradient(batch, displacements.data()));
+        StiffnessSpectrum spectrum = Law::Spectrum(svd, lame(b));
         if (curvature == Curvature::kSemidefinite) ProjectToSemidefinite(spectrum);
         ElementBlocks(batch, svd, spectrum, element);
         ScatterBlocks(batch, tets_.lanes(b), element, blocks.data());
@@ -163,10 +165,10 @@ class ElasticTerm final : public TetTerm {
       for (int64_t b = begin; b < end; ++b) {
         const Matrix3<Double4> g =
             DisplacementGradient(tets_.batches[static_cast<size_t>(b)], displacements.data());
-        const Matrix3<Double4> stress = Law::Stress(g, Law::VolumeOf(g), lame(b));
+        const Matrix3<Double4> stress = Law::Stress(g, Law::KinematicsOf(g), lame(b));
         const int lanes = tets_.lanes(b);
         for (int lane = 0; lane < lanes; ++lane) {
-          Eigen::Matrix3d& target = stresses[static_cast<size_t>(b * kLanes + lane)];
+          Eigen::Matrix3d& target = stresses[static_cast<size_t>(tets_.tet_at(b * kLanes + lane))];
           for (int k = 0; k < 9; ++k) target(k / 3, k % 3) += stress(k / 3, k % 3)[lane];
         }
       }
@@ -174,7 +176,9 @@ class ElasticTerm final : public TetTerm {
   }
 
   void SetDamageFactor(int64_t tet, double factor) override {
-    tets_.batches[static_cast<size_t>(tet / kLanes)].volume[tet % kLanes] =
+    const int64_t place = tets_.place_of(tet);
+    if (place < 0) return;
+    tets_.batches[static_cast<size_t>(place / kLanes)].volume[place % kLanes] =
         factor * RestVolume(mesh_, tet);
   }
 
@@ -192,9 +196,24 @@ class ElasticTerm final : public TetTerm {
 
 }  // namespace
 
-std::unique_ptr<TetTerm> MakeStableNeoHookeanTerm(const TetMesh& mesh, const Incidence& incidence,
-                                                  std::vector<LameConstants<double>> lame) {
-  return std::make_unique<ElasticTerm<StableNeoHookean>>(mesh, incidence, std::move(lame));
+std::unique_ptr<TetTerm> MakeElasticTerm(ElasticLaw law, const TetMesh& mesh,
+                                         const Incidence& incidence, std::vector<int32_t> tets,
+                                         std::vector<LameConstants<double>> lame) {
+  switch (law) {
+    case ElasticLaw::kInvertibleNeoHookean:
+      return std::make_unique<ElasticTerm<InvertibleNeoHookean>>(mesh, incidence, std::move(tets),
+                                                                 std::move(lame));
+    case ElasticLaw::kCorotatedLinear:
+      return std::make_unique<ElasticTerm<CorotatedLinear>>(mesh, incidence, std::move(tets),
+                                                            std::move(lame));
+    case ElasticLaw::kStVenantKirchhoff:
+      return std::make_unique<ElasticTerm<StVenantKirchhoff>>(mesh, incidence, std::move(tets),
+                                                              std::move(lame));
+    case ElasticLaw::kStableNeoHookean:
+      break;
+  }
+  return std::make_unique<ElasticTerm<StableNeoHookean>>(mesh, incidence, std::move(tets),
+                                                         std::move(lame));
 }
 
 }  // namespace cleave

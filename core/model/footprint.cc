@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
@@ -41,9 +42,14 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
                        (nodes + 1 + 4 * tets) * kInt +   // tets of nodes
                        (edges + 1 + 6 * tets) * kInt);   // tets of edges
   const bool uniform = scene.materials.size() <= 1;
+  std::set<ElasticLaw> laws;
+  for (const Material& material : scene.materials) laws.insert(material.law);
+  const auto more_laws = static_cast<int64_t>(std::max<size_t>(laws.size(), 1)) - 1;
+  const int64_t elastic_batches = batches + more_laws;  // each law's last batch may be part empty
   add("elasticity",
-      batches * static_cast<int64_t>(sizeof(TetBatch)) +
-          (uniform ? 1 : batches) * static_cast<int64_t>(sizeof(LameConstants<Double4>)));
+      elastic_batches * static_cast<int64_t>(sizeof(TetBatch)) +
+          (uniform ? 1 : elastic_batches) * static_cast<int64_t>(sizeof(LameConstants<Double4>)) +
+          (more_laws > 0 ? tets * kInt : 0));
   add("state", nodes * (kDouble + 4 * kNodal + kVec3));  // masses, now and before, positions
   add("stiffness matrix", 18 * (edges + 1) * static_cast<int64_t>(sizeof(float)) +
                               2 * (nodes + 1) * kInt + 3 * edges * kInt);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
 
 namespace cleave {
 namespace {
@@ -24,17 +25,34 @@ double RestVolume(const TetMesh& mesh, int64_t tet) {
   return std::abs(RestEdges(mesh, nodes).determinant()) / 6;
 }
 
-TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence) {
+int64_t TetBatches::place_of(int64_t tet) const {
+  if (tets.empty()) return tet;
+  const auto found = std::lower_bound(tets.begin(), tets.end(), tet);
+  return found != tets.end() && *found == tet ? found - tets.begin() : -1;
+}
+
+TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
+                           std::vector<int32_t> tets) {
   TetBatches result;
-  result.tet_count = mesh.tet_count();
-  result.batches.resize(static_cast<size_t>((mesh.tet_count() + kLanes - 1) / kLanes));
-  result.coloring = ColorChunks(mesh.tets, mesh.node_count(), TetBatches::kChunkBatches * kLanes);
+  result.tets = std::move(tets);
+  result.tet_count =
+      result.tets.empty() ? mesh.tet_count() : static_cast<int64_t>(result.tets.size());
+  result.batches.resize(static_cast<size_t>((result.tet_count + kLanes - 1) / kLanes));
+  constexpr int64_t kChunk = TetBatches::kChunkBatches * kLanes;
+  if (result.tets.empty()) {
+    result.coloring = ColorChunks(mesh.tets, mesh.node_count(), kChunk);
+  } else {
+    std::vector<std::array<int32_t, 4>> chosen;
+    for (const int32_t tet : result.tets) chosen.push_back(mesh.tets[static_cast<size_t>(tet)]);
+    result.coloring = ColorChunks(chosen, mesh.node_count(), kChunk);
+  }
   ParallelFor(static_cast<int64_t>(result.batches.size()), 256, [&](int64_t begin, int64_t end) {
     for (int64_t b = begin; b < end; ++b) {
       TetBatch& batch = result.batches[static_cast<size_t>(b)];
       for (size_t lane = 0; lane < kLanes; ++lane) {
         // Lanes past the last tet repeat it with no volume.
-        const int64_t tet = std::min(b * kLanes + static_cast<int64_t>(lane), mesh.tet_count() - 1);
+        const int64_t place = b * kLanes + static_cast<int64_t>(lane);
+        const int64_t tet = result.tet_at(std::min(place, result.tet_count - 1));
         auto nodes = mesh.tets[static_cast<size_t>(tet)];
         std::sort(nodes.begin(), nodes.end());
         for (size_t vertex = 0; vertex < 4; ++vertex) batch.nodes[vertex][lane] = nodes[vertex];
@@ -51,8 +69,7 @@ TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence) {
           for (int axis = 0; axis < 3; ++axis)
             batch.gradient[vertex][axis][lane] = inverse(vertex, axis);
         }
-        batch.volume[lane] =
-            b * kLanes + static_cast<int64_t>(lane) < mesh.tet_count() ? RestVolume(mesh, tet) : 0;
+        batch.volume[lane] = place < result.tet_count ? RestVolume(mesh, tet) : 0;
       }
     }
   });

@@ -24,15 +24,23 @@ struct TetBatch {
   Double4 volume;          // m^3, rest volume times damage factor; 0 in lanes that hold no tet
 };
 
-// All tets of a mesh in batches, in order, and the chunks in which passes over them run.
+// Tets of a mesh in batches, in order, and the chunks in which passes over them run.
 struct TetBatches {
   // A chunk's nodes and blocks stay within the first-level cache, and ten thousand tets still make
   // work for a dozen threads.
   static constexpr int64_t kChunkBatches = 64;
 
-  int64_t tet_count = 0;
+  int64_t tet_count = 0;      // in the batches
+  std::vector<int32_t> tets;  // which, ascending; empty for all of the mesh
   std::vector<TetBatch> batches;
   ChunkColoring coloring;
+
+  // The tet at a place, which is 4 * batch + lane.
+  int64_t tet_at(int64_t place) const {
+    return tets.empty() ? place : tets[static_cast<size_t>(place)];
+  }
+  // The place of a tet, -1 where it is in no batch.
+  int64_t place_of(int64_t tet) const;
 
   int lanes(int64_t batch) const {
     const int64_t left = tet_count - batch * kLanes;
@@ -40,8 +48,9 @@ struct TetBatches {
   }
 };
 
-// Precondition: positive rest volumes.
-TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence);
+// Of the tets that are named, ascending; of all where none is. Precondition: positive rest volumes.
+TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
+                           std::vector<int32_t> tets);
 
 // m^3.
 double RestVolume(const TetMesh& mesh, int64_t tet);

@@ -27,7 +27,7 @@ enum class Curvature {
   kExact,         // may be indefinite, but converges quadratically
 };
 
-// An elastic energy over tets, all of them a batch. Ids are the solver's. Loops run on the caller's
+// An elastic energy over some tets or all. Ids are the solver's. Loops run on the caller's
 // TBB arena and give the same bits for any number of threads.
 class TetTerm {
  public:
@@ -41,10 +41,12 @@ class TetTerm {
   // Adds every tet's second derivative to `blocks`.
   virtual void AddStiffness(const NodalVector& displacements, Curvature curvature,
                             EdgeBlocks& blocks) = 0;
-  // Adds the first Piola-Kirchhoff stress, Pa, a tet each, without the damage factor.
+  // Adds the first Piola-Kirchhoff stress that may break edges, Pa, to that of each tet (a record a
+  // tet of the mesh), without the damage factor.
   virtual void AddEffectiveStress(const NodalVector& displacements,
                                   std::span<Eigen::Matrix3d> stresses) const = 0;
-  // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor.
+  // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor;
+  // nothing where the term does not act in it.
   virtual void SetDamageFactor(int64_t tet, double factor) = 0;
 };
 

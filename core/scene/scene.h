@@ -34,11 +34,20 @@ struct MeshSource {
   double unit_scale = 1;  // metres for one unit of the mesh's coordinates
 };
 
+// How an isotropic solid answers strain (method note, section 5).
+enum class ElasticLaw {
+  kStableNeoHookean,
+  kInvertibleNeoHookean,
+  kCorotatedLinear,
+  kStVenantKirchhoff,
+};
+
 // A material and the regions that it fills. Later materials win where regions overlap.
 struct Material {
   std::string name;
   std::vector<std::string> regions;  // names or decimal ids; empty: every region
-  double youngs_modulus = 0;         // Pa
+  ElasticLaw law = ElasticLaw::kStableNeoHookean;
+  double youngs_modulus = 0;  // Pa
   double poisson_ratio = 0;
   double density = 0;                      // kg/m^3
   std::optional<double> tensile_strength;  // Pa, threshold of edge stress; absent: never breaks

@@ -54,6 +54,7 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   for (const Material& material : scene.materials) {
     out.Put<uint64_t>(material.regions.size());
     for (const std::string& region : material.regions) PutText(region, out);
+    out.Put(static_cast<uint32_t>(material.law));
     out.Put(material.youngs_modulus);
     out.Put(material.poisson_ratio);
     out.Put(material.density);

@@ -104,6 +104,35 @@ class Converter {
     return mesh;
   }
 
+  ElasticLaw Law(const std::string& field, v1::ElasticLaw law) {
+    switch (law) {
+      case v1::ELASTIC_LAW_UNSPECIFIED:
+      case v1::ELASTIC_LAW_STABLE_NEO_HOOKEAN:
+        return ElasticLaw::kStableNeoHookean;
+      case v1::ELASTIC_LAW_INVERTIBLE_NEO_HOOKEAN:
+        return ElasticLaw::kInvertibleNeoHookean;
+      case v1::ELASTIC_LAW_COROTATED_LINEAR:
+        return ElasticLaw::kCorotatedLinear;
+      case v1::ELASTIC_LAW_ST_VENANT_KIRCHHOFF:
+        return ElasticLaw::kStVenantKirchhoff;
+      default:
+        faults_.Error(field, absl::StrCat(static_cast<int>(law), " is not an ElasticLaw"));
+        return ElasticLaw::kStableNeoHookean;
+    }
+  }
+
+  Material OneMaterial(const std::string& field, const v1::Material& message) {
+    Material material;
+    material.name = message.name();
+    material.regions.assign(message.regions().begin(), message.regions().end());
+    material.law = Law(field + ".law", message.law());
+    material.youngs_modulus = message.youngs_modulus();
+    material.poisson_ratio = message.poisson_ratio();
+    material.density = message.density();
+    if (message.has_tensile_strength()) material.tensile_strength = message.tensile_strength();
+    return material;
+  }
+
   Selector OneSelector(const std::string& field, const v1::Selector& message) {
     switch (message.kind_case()) {
       case v1::Selector::kBox:
@@ -164,17 +193,6 @@ class Converter {
   Faults& faults_;
 };
 
-Material MaterialFromMessage(const v1::Material& message) {
-  Material material;
-  material.name = message.name();
-  material.regions.assign(message.regions().begin(), message.regions().end());
-  material.youngs_modulus = message.youngs_modulus();
-  material.poisson_ratio = message.poisson_ratio();
-  material.density = message.density();
-  if (message.has_tensile_strength()) material.tensile_strength = message.tensile_strength();
-  return material;
-}
-
 void ReadSettings(const v1::Scene& message, Scene& scene) {
   const v1::Fracture& fracture = message.fracture();
   if (fracture.has_max_passes()) scene.fracture.max_passes = fracture.max_passes();
@@ -215,8 +233,9 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   Scene scene;
   scene.name = message.name();
   scene.mesh = convert.Mesh(message.mesh());
-  for (const v1::Material& material : message.materials()) {
-    scene.materials.push_back(MaterialFromMessage(material));
+  for (int i = 0; i < message.materials_size(); ++i) {
+    scene.materials.push_back(
+        convert.OneMaterial(absl::StrCat("materials[", i, "]"), message.materials(i)));
   }
   for (int i = 0; i < message.node_sets_size(); ++i) {
     NodeSet& set = scene.node_sets.emplace_back();

@@ -74,6 +74,20 @@ struct WriteSelector {
   }
 };
 
+v1::ElasticLaw MessageFromLaw(ElasticLaw law) {
+  switch (law) {
+    case ElasticLaw::kInvertibleNeoHookean:
+      return v1::ELASTIC_LAW_INVERTIBLE_NEO_HOOKEAN;
+    case ElasticLaw::kCorotatedLinear:
+      return v1::ELASTIC_LAW_COROTATED_LINEAR;
+    case ElasticLaw::kStVenantKirchhoff:
+      return v1::ELASTIC_LAW_ST_VENANT_KIRCHHOFF;
+    case ElasticLaw::kStableNeoHookean:
+      break;
+  }
+  return v1::ELASTIC_LAW_STABLE_NEO_HOOKEAN;
+}
+
 void WriteMotion(const Motion& motion, v1::Motion* message) {
   message->set_node_set(motion.node_set);
   for (int axis = 0; axis < 3; ++axis) {
@@ -124,6 +138,7 @@ v1::Scene MessageFromScene(const Scene& scene) {
     v1::Material* to = message.add_materials();
     to->set_name(material.name);
     to->mutable_regions()->Add(material.regions.begin(), material.regions.end());
+    to->set_law(MessageFromLaw(material.law));
     to->set_youngs_modulus(material.youngs_modulus);
     to->set_poisson_ratio(material.poisson_ratio);
     to->set_density(material.density);

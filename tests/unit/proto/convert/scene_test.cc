@@ -32,6 +32,7 @@ constexpr char kEveryField[] = R"pb(
     poisson_ratio: 0.2
     density: 1900
     tensile_strength: 3e6
+    law: ELASTIC_LAW_COROTATED_LINEAR
   }
   node_sets {
     name: "grip"

@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+#include "core/material/corotated_linear.h"
+#include "core/material/invertible_neo_hookean.h"
+#include "core/material/moduli.h"
+#include "core/material/st_venant_kirchhoff.h"
+#include "core/material/stable_neo_hookean.h"
+#include "tests/unit/core/material/law_calculus.h"
+#include "tests/unit/core/material/reference_values.h"
+
+namespace cleave {
+namespace {
+
+LameConstants<Double4> ReferenceLame() {
+  const auto lame = ToLame(reference::kYoungsModulus, reference::kPoissonRatio);
+  return {Splat(lame.mu), Splat(lame.lambda)};
+}
+
+template <typename Law>
+class ElasticLaw : public ::testing::Test {};
+using Laws =
+    ::testing::Types<StableNeoHookean, InvertibleNeoHookean, CorotatedLinear, StVenantKirchhoff>;
+TYPED_TEST_SUITE(ElasticLaw, Laws);
+
+// Singular values on both sides of inversion, none near s_i + s_j = 0 or a kink of the extended
+// logarithm's third derivative.
+const Eigen::Vector3d kStretches[] = {
+    {1.02, 1.0, 0.97},  {1.5, 1.2, 0.4},          {2.5, 0.3, 0.2},  {1.0, 1.0, 1.0},
+    {0.5, 0.5, 0.5},    {1.3, 0.8, -0.3},         {1.1, 0.7, 0.05}, {0.08, 0.06, 0.03},
+    {1.2, 0.09, -0.04}, {1.0 + 1e-9, 1, 1 - 1e-9}};
+
+TYPED_TEST(ElasticLaw, StressIsTheDerivativeOfEnergy) {
+  std::mt19937 random(1);
+  const auto lame = ReferenceLame();
+  for (const Eigen::Vector3d& stretches : kStretches) {
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      const Eigen::Matrix3d f = RandomGradient(random, stretches);
+      const Eigen::Matrix3d stress = StressAt<TypeParam>(f, lame);
+      Eigen::Matrix3d difference;
+      constexpr double h = 1e-5;
+      for (int k = 0; k < 9; ++k) {
+        // Richardson's combination of two central differences: the error is of order h^4.
+        const auto slope = [&](double step) {
+          Eigen::Matrix3d up = f, down = f;
+          up(k / 3, k % 3) += step;
+          down(k / 3, k % 3) -= step;
+          return (EnergyAt<TypeParam>(up, lame) - EnergyAt<TypeParam>(down, lame)) / (2 * step);
+        };
+        difference(k / 3, k % 3) = (4 * slope(h) - slope(2 * h)) / 3;
+      }
+      const double scale = stress.norm() + reference::kYoungsModulus;
+      EXPECT_LT((stress - difference).norm(), 1e-7 * scale) << stretches.transpose();
+    }
+  }
+}
+
+TYPED_TEST(ElasticLaw, SecondDerivativeIsTheDerivativeOfStress) {
+  std::mt19937 random(2);
+  const auto lame = ReferenceLame();
+  for (const Eigen::Vector3d& stretches : kStretches) {
+    for (int repeat = 0; repeat < 5; ++repeat) {
+      const Eigen::Matrix3d f = RandomGradient(random, stretches);
+      const SignedSvd svd = ComputeSvd(DisplacementGradientOf(f));
+      const Matrix9d stiffness = SecondDerivative(svd, TypeParam::Spectrum(svd, lame));
+      Matrix9d difference;
+      constexpr double h = 1e-6;
+      for (int k = 0; k < 9; ++k) {
+        Eigen::Matrix3d up = f, down = f;
+        up(k / 3, k % 3) += h;
+        down(k / 3, k % 3) -= h;
+        const Eigen::Matrix3d slope =
+            (StressAt<TypeParam>(up, lame) - StressAt<TypeParam>(down, lame)) / (2 * h);
+        for (int row = 0; row < 9; ++row) difference(row, k) = slope(row / 3, row % 3);
+      }
+      EXPECT_LT((stiffness - difference).norm(), 1e-6 * stiffness.norm()) << stretches.transpose();
+    }
+  }
+}
+
+TYPED_TEST(ElasticLaw, ProjectedSecondDerivativeHasNoNegativeEigenvalue) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> stretch(-1.5, 2.5);
+  const auto lame = ReferenceLame();
+  for (int repeat = 0; repeat < 300; ++repeat) {
+    const Eigen::Matrix3d f =
+        RandomGradient(random, {stretch(random), stretch(random), stretch(random)});
+    const SignedSvd svd = ComputeSvd(DisplacementGradientOf(f));
+    StiffnessSpectrum spectrum = TypeParam::Spectrum(svd, lame);
+    ProjectToSemidefinite(spectrum);
+    const Eigen::SelfAdjointEigenSolver<Matrix9d> solver(SecondDerivative(svd, spectrum));
+    EXPECT_GE(solver.eigenvalues()(0), -1e-9 * solver.eigenvalues()(8));
+  }
+}
+
+TYPED_TEST(ElasticLaw, EnergyAndStressDoNotSeeRotations) {
+  std::mt19937 random(4);
+  const auto lame = ReferenceLame();
+  const Eigen::Matrix3d f = RandomGradient(random, {1.4, 0.9, 0.6});
+  const Eigen::Matrix3d rotation = RandomGradient(random, {1, 1, 1});
+  EXPECT_NEAR(EnergyAt<TypeParam>(rotation, lame), 0, 1e-12 * reference::kYoungsModulus);
+  EXPECT_LT(StressAt<TypeParam>(rotation, lame).norm(), 1e-12 * reference::kYoungsModulus);
+  EXPECT_NEAR(EnergyAt<TypeParam>(rotation * f, lame), EnergyAt<TypeParam>(f, lame), 1e-10);
+  EXPECT_LT(
+      (StressAt<TypeParam>(rotation * f, lame) - rotation * StressAt<TypeParam>(f, lame)).norm(),
+      1e-12 * StressAt<TypeParam>(f, lame).norm());
+}
+
+TYPED_TEST(ElasticLaw, EveryStateIsFinite) {
+  std::mt19937 random(5);
+  const auto lame = ReferenceLame();
+  const Eigen::Vector3d states[] = {{1, 1, 0},    {1, 0, 0},      {0, 0, 0},     {1, 1, -1},
+                                    {2, 1, -1},   {1, 1e-20, 0},  {1e6, 1, 1},   {1e6, 1e-6, -1e-6},
+                                    {-3, -3, -3}, {1e-200, 0, 0}, {1, 0.1, 0.1}, {0.1, 0.1, -0.1}};
+  for (const Eigen::Vector3d& state : states) {
+    for (const Eigen::Matrix3d& f :
+         {Eigen::Matrix3d(state.asDiagonal()), RandomGradient(random, state)}) {
+      EXPECT_TRUE(std::isfinite(EnergyAt<TypeParam>(f, lame))) << state.transpose();
+      EXPECT_TRUE(StressAt<TypeParam>(f, lame).allFinite()) << state.transpose();
+      const SignedSvd svd = ComputeSvd(DisplacementGradientOf(f));
+      StiffnessSpectrum spectrum = TypeParam::Spectrum(svd, lame);
+      ProjectToSemidefinite(spectrum);
+      EXPECT_TRUE(SecondDerivative(svd, spectrum).allFinite()) << state.transpose();
+    }
+  }
+}
+
+TYPED_TEST(ElasticLaw, SmallStrainsFollowHookesLawToTheirLastDigits) {
+  const auto lame = ReferenceLame();
+  constexpr double strain = 1e-12;
+  Matrix3<Double4> g = DisplacementGradientOf(Eigen::Matrix3d::Identity());
+  g(0, 0) = Splat(strain);
+  const auto kinematics = TypeParam::KinematicsOf(g);
+  const double mu = lame.mu[0], lambda = lame.lambda[0];
+  EXPECT_NEAR(TypeParam::Energy(g, kinematics, lame)[0] / (strain * strain), mu + lambda / 2, 1e-8);
+  const Eigen::Matrix3d stress = FirstLane(TypeParam::Stress(g, kinematics, lame)) / strain;
+  EXPECT_NEAR(stress(0, 0), 2 * mu + lambda, 1e-7);
+  EXPECT_NEAR(stress(1, 1), lambda, 1e-7);
+}
+
+template <typename Law>
+void ExpectReference(const reference::Response* responses) {
+  const auto lame = ReferenceLame();
+  for (size_t k = 0; k < std::size(reference::kDeformationGradients); ++k) {
+    const auto& [name, rows] = reference::kDeformationGradients[k];
+    SCOPED_TRACE(name);
+    const Eigen::Matrix3d f = MatrixOf(rows);
+    const auto& [energy, stress, eigenvalues] = responses[k];
+    EXPECT_NEAR(EnergyAt<Law>(f, lame), energy, 1e-11 * (energy + 1));
+    const Eigen::Matrix3d expected = MatrixOf(stress);
+    EXPECT_LT((StressAt<Law>(f, lame) - expected).norm(), 1e-11 * (expected.norm() + 1));
+    if (eigenvalues == std::array<double, 9>{}) continue;
+    const SignedSvd svd = ComputeSvd(DisplacementGradientOf(f));
+    const Eigen::SelfAdjointEigenSolver<Matrix9d> solver(
+        SecondDerivative(svd, Law::Spectrum(svd, lame)));
+    for (int i = 0; i < 9; ++i) {
+      EXPECT_NEAR(solver.eigenvalues()(i), eigenvalues[static_cast<size_t>(i)],
+                  1e-11 * (std::abs(eigenvalues[8]) + std::abs(eigenvalues[0])));
+    }
+  }
+}
+
+TEST(StableNeoHookean, MatchesTheReference) {
+  ExpectReference<StableNeoHookean>(reference::kStableNeoHookean);
+}
+TEST(InvertibleNeoHookean, MatchesTheReference) {
+  ExpectReference<InvertibleNeoHookean>(reference::kInvertibleNeoHookean);
+}
+TEST(CorotatedLinear, MatchesTheReference) {
+  ExpectReference<CorotatedLinear>(reference::kCorotatedLinear);
+}
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,92 @@
+#ifndef CLEAVE_TESTS_UNIT_CORE_MATERIAL_LAW_CALCULUS_H_
+#define CLEAVE_TESTS_UNIT_CORE_MATERIAL_LAW_CALCULUS_H_
+
+#include <Eigen/Dense>
+#include <array>
+#include <random>
+
+#include "core/base/double4.h"
+#include "core/base/matrix3.h"
+#include "core/material/isotropic_stiffness.h"
+
+namespace cleave {
+
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+// F - I, the same in every lane.
+inline Matrix3<Double4> DisplacementGradientOf(const Eigen::Matrix3d& f) {
+  Matrix3<Double4> g;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) g(i, j) = Splat(f(i, j) - (i == j ? 1 : 0));
+  }
+  return g;
+}
+
+inline Eigen::Matrix3d FirstLane(const Matrix3<Double4>& batch) {
+  Eigen::Matrix3d matrix;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) matrix(i, j) = batch(i, j)[0];
+  }
+  return matrix;
+}
+
+inline Eigen::Matrix3d MatrixOf(const std::array<double, 9>& rows) {
+  Eigen::Matrix3d matrix;
+  for (int k = 0; k < 9; ++k) matrix(k / 3, k % 3) = rows[static_cast<size_t>(k)];
+  return matrix;
+}
+
+template <typename Law>
+double EnergyAt(const Eigen::Matrix3d& f, const LameConstants<Double4>& lame) {
+  const Matrix3<Double4> g = DisplacementGradientOf(f);
+  return Law::Energy(g, Law::KinematicsOf(g), lame)[0];
+}
+
+template <typename Law>
+Eigen::Matrix3d StressAt(const Eigen::Matrix3d& f, const LameConstants<Double4>& lame) {
+  const Matrix3<Double4> g = DisplacementGradientOf(f);
+  return FirstLane(Law::Stress(g, Law::KinematicsOf(g), lame));
+}
+
+// The second derivative of psi by F, both stored row by row, that a spectrum stands for.
+inline Matrix9d SecondDerivative(const SignedSvd& svd, const StiffnessSpectrum& spectrum) {
+  const Eigen::Matrix3d u = FirstLane(svd.u), v = FirstLane(svd.v);
+  Matrix9d result = Matrix9d::Zero();
+  const auto direction = [&](int i, int j, double other) {
+    Eigen::Matrix3d turned = Eigen::Matrix3d::Zero();
+    turned(i, j) += 1;
+    if (other != 0) turned(j, i) += other;
+    const Eigen::Matrix3d straight = u * turned * v.transpose();
+    Eigen::Matrix<double, 9, 1> entries;
+    for (int k = 0; k < 9; ++k) entries(k) = straight(k / 3, k % 3);
+    return entries;
+  };
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      result += spectrum.axial[i][j][0] * direction(i, i, 0) * direction(j, j, 0).transpose();
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const auto symmetric = direction(i, j, 1), skew = direction(i, j, -1);
+    result += 0.5 * spectrum.symmetric[k][0] * symmetric * symmetric.transpose();
+    result += 0.5 * spectrum.skew[k][0] * skew * skew.transpose();
+  }
+  return result;
+}
+
+// A random deformation gradient with these singular values.
+inline Eigen::Matrix3d RandomGradient(std::mt19937& random, const Eigen::Vector3d& stretches) {
+  std::normal_distribution<double> normal;
+  const auto rotation = [&] {
+    return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+        .normalized()
+        .toRotationMatrix();
+  };
+  const Eigen::Matrix3d left = rotation();
+  return left * stretches.asDiagonal() * rotation().transpose();
+}
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_UNIT_CORE_MATERIAL_LAW_CALCULUS_H_
