@@ -77,7 +77,7 @@ class ByteReader {
       return {};
     }
     std::vector<T> items(count);
-    std::memcpy(items.data(), bytes_.data(), count * sizeof(T));
+    if (count > 0) std::memcpy(items.data(), bytes_.data(), count * sizeof(T));
     bytes_.remove_prefix(count * sizeof(T));
     return items;
   }
