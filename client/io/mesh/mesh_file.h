@@ -20,7 +20,7 @@ namespace cleave {
 // non-tetrahedral elements are refused with the way out.
 absl::StatusOr<TetMesh> ReadMeshFile(const std::string& path);
 
-// The same for the bytes of a file that was called `name`.
+// The same for the bytes of a file that was called `name`; not for TetGen, which is two files.
 absl::StatusOr<TetMesh> ParseMeshFile(absl::string_view bytes, absl::string_view name);
 
 }  // namespace cleave

@@ -2,10 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <zstd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "absl/strings/str_cat.h"
 #include "client/io/mesh/file_bytes.h"
+#include "tests/unit/client/io/mesh/sample_files.h"
 
 namespace cleave {
 namespace {
@@ -52,8 +57,44 @@ TEST(MeshFile, BundledSpecimenHasItsThreeParts) {
   EXPECT_EQ(mesh->regions[2].name, "grip_right");
 }
 
+// A folder of its own that goes with the test.
+class MeshFileOnDisk : public ::testing::Test {
+ protected:
+  MeshFileOnDisk() : folder_(absl::StrCat(::testing::TempDir(), "/mesh_file_test_", getpid())) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~MeshFileOnDisk() override { std::filesystem::remove_all(folder_); }
+  std::string Write(absl::string_view name, absl::string_view bytes) const {
+    const std::string path = absl::StrCat(folder_, "/", name);
+    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
+    return path;
+  }
+
+ private:
+  const std::string folder_;
+};
+
+TEST_F(MeshFileOnDisk, EitherTetGenFileLeadsToBoth) {
+  const std::string node = Write("body.1.node", samples::kTetGenNode);
+  EXPECT_EQ(ReadMeshFile(node).status().code(), absl::StatusCode::kNotFound);
+  EXPECT_THAT(MessageOf(ReadMeshFile(node)), HasSubstr("body.1.ele"));
+  const std::string ele = Write("body.1.ele.zst", Compressed(samples::kTetGenEle));
+  for (const std::string& path : {node, ele}) {
+    const absl::StatusOr<TetMesh> mesh = ReadMeshFile(path);
+    ASSERT_TRUE(mesh.ok()) << mesh.status();
+    EXPECT_EQ(mesh->tet_count(), 2);
+  }
+}
+
+TEST_F(MeshFileOnDisk, CompressedFilesAreReadWhateverTheirName) {
+  for (const auto& [name, bytes] : samples::All()) {
+    EXPECT_TRUE(ReadMeshFile(Write(name, Compressed(bytes))).ok()) << name;
+    EXPECT_TRUE(ReadMeshFile(Write(name + ".zst", Compressed(bytes))).ok()) << name;
+  }
+}
+
 TEST(DecompressZstd, IsBoundedAndRefusesDamage) {
-  const std::string zeros(10'000'000, '\0');
+  const std::string zeros(3'000'000, '\0');
   const std::string packed = Compressed(zeros);
   EXPECT_EQ(DecompressZstd(packed, zeros.size()).value(), zeros);
   EXPECT_EQ(DecompressZstd(packed + packed, 2 * zeros.size()).value().size(), 2 * zeros.size());

@@ -45,6 +45,8 @@ TEST_F(RealMeshes, AreReadAndSound) {
       {"format-cases/gmsh_41_ascii.msh", 8, 5, 1, 3},
       {"format-cases/gmsh_41_binary.msh", 8, 5, 1, 3},
       {"format-cases/gmsh_physical_sides_3d_v41.msh", 5, 2, 1, 2},
+      {"format-cases/beam-tet_legacy.vtk", 36, 48, 1, 2},
+      {"tet/beam3_tet.veg", 208, 450, 1, 1},
       {"format-cases/nested_cubes_v22.msh", 138, 520, 1, 2},
   };
   for (const Expected& expected : meshes) {
