@@ -1,0 +1,126 @@
+#include "core/model/footprint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/mesh/incidence.h"
+#include "core/model/build_model.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/solver/test_scene.h"
+
+namespace cleave {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<std::string> Names(const Footprint& footprint) {
+  std::vector<std::string> names;
+  for (const Part& part : footprint.parts) names.push_back(part.name);
+  return names;
+}
+
+Footprint Plan(const Scene& scene) { return PlanModel(scene, 1000, 4000, 6000); }
+
+int64_t BytesOf(const Footprint& footprint, const std::string& name) {
+  for (const Part& part : footprint.parts) {
+    if (part.name == name) return part.bytes;
+  }
+  return -1;
+}
+
+TEST(Footprint, AMinimalSceneHasTheseParts) {
+  const Footprint footprint = Plan(TightScene(1e6, 0.3, 1000, 0.01));
+  EXPECT_THAT(Names(footprint), ElementsAre("mesh", "incidence", "elasticity", "state",
+                                            "stiffness matrix", "solver"));
+  int64_t sum = 0;
+  for (const Part& part : footprint.parts) sum += part.bytes;
+  EXPECT_EQ(footprint.total_bytes, sum);
+  EXPECT_GT(footprint.seconds_per_frame, 0);
+  EXPECT_DOUBLE_EQ(footprint.total_seconds, 48 * footprint.seconds_per_frame);
+}
+
+TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
+  const Scene minimal = TightScene(1e6, 0.3, 1000, 0.01);
+  const Footprint base = Plan(minimal);
+  const auto expect_adds = [&](const Scene& scene, const std::string& name) {
+    const Footprint footprint = Plan(scene);
+    ASSERT_EQ(footprint.parts.size(), base.parts.size() + 1) << name;
+    EXPECT_EQ(footprint.parts.back().name, name);
+    for (size_t k = 0; k < base.parts.size(); ++k) {
+      EXPECT_EQ(footprint.parts[k].name, base.parts[k].name);
+      EXPECT_EQ(footprint.parts[k].bytes, base.parts[k].bytes);
+    }
+  };
+  Scene scene = minimal;
+  scene.gravity = Vec3{0, 0, -9.81};
+  expect_adds(scene, "gravity");
+  scene = minimal;
+  AddMotion(scene, "any");
+  expect_adds(scene, "motions");
+  scene = minimal;
+  scene.initial_velocities.emplace_back();
+  expect_adds(scene, "initial velocities");
+  scene = minimal;
+  scene.materials[0].tensile_strength = 1e5;
+  expect_adds(scene, "fracture");
+}
+
+TEST(Footprint, ASecondMaterialCostsARecordABatch) {
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  const int64_t uniform = BytesOf(Plan(scene), "elasticity");
+  scene.materials.push_back(scene.materials[0]);
+  EXPECT_EQ(BytesOf(Plan(scene), "elasticity") - uniform, (4000 / 4 - 1) * 64);
+}
+
+TEST(Footprint, ElasticityTakesTheBytesThatWerePlanned) {
+  const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  for (int materials = 1; materials <= 2; ++materials) {
+    const Model model = *BuildModel(scene, mesh);
+    const Footprint footprint =
+        PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+    EXPECT_EQ(BytesOf(footprint, "elasticity"), model.tet_terms[0]->bytes());
+    scene.materials.push_back(scene.materials[0]);
+  }
+}
+
+TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
+  const TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  const Model minimal = *BuildModel(scene, mesh);
+  EXPECT_FALSE(minimal.gravity.has_value());
+  EXPECT_FALSE(minimal.fracture.has_value());
+  EXPECT_TRUE(minimal.motions.empty());
+  EXPECT_EQ(minimal.tet_terms.size(), 1u);
+  double mass = 0;
+  for (const double of_node : minimal.masses) mass += of_node;
+  EXPECT_NEAR(mass, 1000, 1e-9);
+
+  scene.materials[0].tensile_strength = 1e5;
+  const Model breaking = *BuildModel(scene, mesh);
+  ASSERT_TRUE(breaking.fracture.has_value());
+  EXPECT_EQ(breaking.fracture->edge_thresholds, std::vector<double>{1e5});
+  // Client edge ids are a renumbering that leads to the same nodes.
+  const Incidence incidence = BuildIncidence(mesh);
+  for (size_t edge = 0; edge < breaking.incidence->edges.size(); ++edge) {
+    auto ends = breaking.incidence->edges[edge];
+    for (int32_t& end : ends) end = breaking.order.old_node[static_cast<size_t>(end)];
+    std::sort(ends.begin(), ends.end());
+    EXPECT_EQ(incidence.edges[static_cast<size_t>(breaking.fracture->client_edge[edge])], ends);
+  }
+}
+
+TEST(BuildModel, RefusesATetWithoutMaterial) {
+  TetMesh mesh = KuhnBox({1, 1, 1}, {1, 1, 1});
+  mesh.tet_regions.assign(6, 3);
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  scene.materials[0].regions = {"4"};
+  EXPECT_EQ(BuildModel(scene, mesh).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace cleave
