@@ -159,4 +159,18 @@ absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                 FromEigen(up),       ground};
 }
 
+absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraOptions& options) {
+  CLEAVE_ASSIGN_OR_RETURN(const Camera camera, FrameCamera(points, 1, options));
+  double widest = 0;
+  double tallest = 0;
+  for (const Vec3& point : points) {
+    const Vector3d from = ToEigen(point) - ToEigen(camera.position);
+    const double depth = ToEigen(camera.forward).dot(from);
+    widest = std::max(widest, std::abs(ToEigen(camera.right).dot(from)) / depth);
+    tallest = std::max(tallest, std::abs(ToEigen(camera.up).dot(from)) / depth);
+  }
+  if (widest <= 0 || tallest <= 0) return 1.5;
+  return std::clamp(widest / tallest, 0.75, 2.2);
+}
+
 }  // namespace cleave

@@ -39,6 +39,10 @@ struct CameraOptions {
 absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                                    const CameraOptions& options);
 
+// Width by height of the picture in which the points fill the frame, held within [0.75, 2.2].
+// Errors: those of FrameCamera.
+absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraOptions& options);
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CLIENT_IO_PREVIEW_CAMERA_H_
