@@ -38,6 +38,7 @@ class BodySimulation final : public Simulation {
     const std::vector<uint8_t> broken(static_cast<size_t>(model_.incidence->edge_count()), 0);
     fragments_ = LabelComponents(*model_.incidence, broken, labels);
     PublishPositions();
+    PublishBroken();
   }
 
   absl::StatusOr<FrameReport> Advance(const StopFlag& stop) override {

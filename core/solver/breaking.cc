@@ -21,6 +21,8 @@ Breaking::Breaking(const Model& model)
                 model.fracture->settings),
       positions_(model.masses.size()),
       stresses_(static_cast<size_t>(model.tet_count())) {
+  // Edges without strength are cut before anything moves.
+  if (fracture_.broken_edge_count() > 0) ApplyDamage();
   Mark();
 }
 

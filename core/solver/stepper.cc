@@ -45,11 +45,13 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, end, displacements_);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
+  // Motions move the body as it was, then it breaks: that way work and fracture energy match.
+  const double motion_work = MotionWork(state);
   double fracture_energy = 0;
   if (breaking_) CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, report));
 
   report.fracture_energy += fracture_energy;
-  AddWork(state, report);
+  report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
   state.displacements.swap(displacements_);
@@ -72,21 +74,23 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
   return absl::OkStatus();
 }
 
-void Stepper::AddWork(const State& state, StepReport& report) const {
-  if (model_.gravity) {
-    Double4 sum = Splat(0);
-    for (size_t node = 0; node < displacements_.size(); ++node)
-      sum += model_.masses[node] * (displacements_[node] - state.displacements[node]);
-    report.external_work += Dot(sum, ToDouble4(*model_.gravity));
-  }
+double Stepper::MotionWork(const State& state) const {
   Double4 sum = Splat(0);
   for (const FixedNode& fixed : newton_.fixed_nodes()) {
     const auto node = static_cast<size_t>(fixed.node);
-    const Double4 power =
+    const Double4 work =
         newton_.outer_forces()[node] * (displacements_[node] - state.displacements[node]);
-    sum += fixed.axes ? power : Splat(0);
+    sum += fixed.axes ? work : Splat(0);
   }
-  report.external_work += Sum(sum);
+  return Sum(sum);
+}
+
+double Stepper::GravityWork(const State& state) const {
+  if (!model_.gravity) return 0;
+  Double4 sum = Splat(0);
+  for (size_t node = 0; node < displacements_.size(); ++node)
+    sum += model_.masses[node] * (displacements_[node] - state.displacements[node]);
+  return Dot(sum, ToDouble4(*model_.gravity));
 }
 
 int64_t Stepper::bytes() const {

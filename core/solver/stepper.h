@@ -42,7 +42,9 @@ class Stepper {
   // Alternates breaking and solving until no edge fails. Adds the elastic energy lost, J.
   absl::Status Break(double dt, const StopFlag& stop, const State& state, double& fracture_energy,
                      StepReport& report);
-  void AddWork(const State& state, StepReport& report) const;
+  // J, over the step from `state` to `displacements_`.
+  double MotionWork(const State& state) const;
+  double GravityWork(const State& state) const;
 
   const Model& model_;
   NewtonSolver newton_;

@@ -103,5 +103,55 @@ TEST(ClosedForm, APatchUnderAnAffineBoundaryIsAffineInside) {
   }
 }
 
+TEST(ClosedForm, ARigidTurnCostsNothing) {
+  const TetMesh mesh = KuhnBox({3, 2, 2}, {1.5, 1, 1});
+  Scene scene = TightScene(1e5, 0.3, 1e-9, 1);
+  AddBoxSet(scene, "all", {-kFar, -kFar, -kFar}, {kFar, kFar, kFar});
+  Motion& turn = AddMotion(scene, "all");
+  turn.rotation_axis = {1, -2, 0.5};
+  turn.rotation_center = {3, 4, 5};
+  turn.keyframes = {{0, {0, 0, 0}, 0}, {10, {7, 8, 9}, 30}};
+  auto simulation = MustCreate(scene, mesh);
+  const StopFlag stop;
+  for (int step = 0; step < 10; ++step) {
+    const auto report = simulation->Advance(stop);
+    ASSERT_TRUE(report.ok()) << report.status();
+    EXPECT_NEAR(report->elastic_energy, 0, 1e-12 * 1e5);
+    for (const double force : report->motion_forces[0]) EXPECT_NEAR(force, 0, 1e-6);
+  }
+}
+
+// Edges along the bar fail at their stress, which is the load over the rest area.
+TEST(ClosedForm, ABarFirstBreaksAtItsStrengthTimesItsArea) {
+  const TetMesh mesh = KuhnBox({4, 2, 2}, {2, 1, 1});
+  Scene scene = TightScene(1e6, 0.3, 1e-6, 1);
+  scene.materials[0].tensile_strength = 1e5;
+  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddBoxSet(scene, "x1", {2 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
+  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
+  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
+  AddMotion(scene, "x0", {true, false, false});
+  AddMotion(scene, "y0", {false, true, false});
+  AddMotion(scene, "z0", {false, false, true});
+  AddMotion(scene, "x1", {true, false, false}).keyframes = {{0, {0, 0, 0}, 0},
+                                                            {100, {0.3, 0, 0}, 0}};
+  auto simulation = MustCreate(scene, mesh);
+  const StopFlag stop;
+  double load = 0, stretch = 1;
+  while (simulation->broken_edges().empty() && simulation->frame() < 100) {
+    const auto report = simulation->Advance(stop);
+    ASSERT_TRUE(report.ok()) << report.status();
+    if (report->broken_edges > 0) break;
+    load = report->motion_forces.back()[0];
+    stretch = simulation->positions().back()[0] / 2;
+  }
+  ASSERT_FALSE(simulation->broken_edges().empty());
+  // The last whole frame is up to one frame, 0.0015 of stretch, before the break.
+  EXPECT_LE(load, 1e5);
+  EXPECT_NEAR(load, 1e5, 1.5e3);
+  EXPECT_LE(stretch, 1.107255);
+  EXPECT_NEAR(stretch, 1.107255, 0.0016);
+}
+
 }  // namespace
 }  // namespace cleave
