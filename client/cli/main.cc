@@ -49,6 +49,7 @@ int Main(int argc, char** argv) {
   AddValidate(app, program);
   AddPlan(app, program);
   AddInspect(app, program);
+  AddExport(app, program);
   AddInfo(app, program);
   if (NamesUnknownVerb(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {

@@ -1,0 +1,93 @@
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/console.h"
+#include "client/cli/program.h"
+#include "client/cli/run_results.h"
+#include "client/io/export/export_series.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+struct Options {
+  std::string run;
+  std::string mesh;
+  double unit_scale = 1;
+  std::string format = "vtu";
+  std::string to;
+  std::string name = "cleave";
+  int64_t first = 0;
+  int64_t last = std::numeric_limits<int64_t>::max();
+  int64_t stride = 1;
+};
+
+// exports/vtu beside the recording, unless said otherwise.
+std::string TargetFolder(const Options& options) {
+  if (!options.to.empty()) return options.to;
+  std::filesystem::path beside = options.run;
+  std::error_code error;
+  if (!std::filesystem::is_directory(beside, error)) beside = beside.parent_path();
+  return (beside / options.format).string();
+}
+
+absl::Status Export(Program& program, const Options& options) {
+  CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
+                          OpenRecordedRun(options.run, options.mesh, options.unit_scale));
+  CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
+                          SelectFrames(run.recording, options.first, options.last, options.stride));
+  const ExportOptions target{TargetFolder(options), options.name};
+  const Progress progress = ShowingProgress("exporting frames", program.interrupt);
+  const auto result = options.format == "ply"
+                          ? WritePlySeries(run.mesh, frames, target, progress)
+                          : WriteVtuSeries(run.mesh, frames,
+                                           options.format == "vtu-volume" ? VtuContent::kVolume
+                                                                          : VtuContent::kSurface,
+                                           target, progress);
+  if (!result.ok()) return result.status();
+  PrintResult(result->collection.empty() ? target.folder : result->collection);
+  PrintNote(absl::StrCat(result->written, " files written, ", result->kept, " were there already"));
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddExport(CLI::App& app, Program& program) {
+  CLI::App* verb = app.add_subcommand("export", "Write recorded frames as VTU or PLY files");
+  auto options = std::make_shared<Options>();
+  verb->add_option("run", options->run, "Folder of a run, or a .clv file")
+      ->required()
+      ->type_name("RUN");
+  verb->add_option("--format", options->format,
+                   "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply: surfaces")
+      ->check(CLI::IsMember({"vtu", "vtu-volume", "ply"}))
+      ->capture_default_str();
+  verb->add_option("--to", options->to, "Folder for the files; default: RUN/FORMAT")
+      ->type_name("DIR");
+  verb->add_option("--name", options->name, "What file names begin with")->capture_default_str();
+  verb->add_option("--mesh", options->mesh,
+                   "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
+      ->type_name("MESH");
+  verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("METRES");
+  verb->add_option("--first", options->first, "First frame")->check(CLI::NonNegativeNumber);
+  verb->add_option("--last", options->last, "Last frame")->check(CLI::NonNegativeNumber);
+  verb->add_option("--stride", options->stride, "Every N-th frame")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->footer(
+      "Prints the .pvd (open it in ParaView) or the folder. Files that are there already from the\n"
+      "same frames are kept, so an export that was cut goes on.\n\n"
+      "Examples:\n"
+      "  cleave export out/bar\n"
+      "  cleave export out/bar --format ply --first 10 --last 10 --to now\n");
+  verb->callback([options, &program] {
+    program.action = [options](Program& shared) { return Export(shared, *options); };
+  });
+}
+
+}  // namespace cleave

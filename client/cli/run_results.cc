@@ -1,0 +1,75 @@
+#include "client/cli/run_results.h"
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/console.h"
+#include "client/cli/run_folder.h"
+#include "client/cli/scene_input.h"
+#include "core/base/status.h"
+#include "core/base/stopwatch.h"
+#include "core/mesh/mesh_check.h"
+
+namespace cleave {
+
+absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::string& mesh_path,
+                                            double unit_scale) {
+  std::error_code error;
+  const bool folder = std::filesystem::is_directory(path, error);
+  const std::string frames = folder ? RunFolder(path).frames() : path;
+  std::string mesh_file = mesh_path;
+  if (mesh_file.empty())
+    mesh_file =
+        RunFolder(
+            folder ? path
+                   : (std::filesystem::path(path).parent_path() / ".").lexically_normal().string())
+            .mesh();
+  if (mesh_path.empty() && !std::filesystem::exists(mesh_file, error))
+    return absl::NotFoundError(absl::StrCat(mesh_file, ": is not there; name the mesh of ", frames,
+                                            " with --mesh (a scene file will do)"));
+  RecordedRun run;
+  CLEAVE_ASSIGN_OR_RETURN(run.mesh, ReadAnyMesh(mesh_file, unit_scale));
+  CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(run.mesh).ToStatus());
+  CLEAVE_ASSIGN_OR_RETURN(run.recording, OpenRecording(frames, run.mesh.rest_positions));
+  if (run.recording.frames.count == 0)
+    return absl::FailedPreconditionError(absl::StrCat(frames, ": holds no frames yet"));
+  return run;
+}
+
+absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,
+                                         int64_t stride) {
+  auto positions = std::make_shared<std::vector<int64_t>>();
+  for (size_t i = 0; i < recording.rows.size(); ++i) {
+    const int64_t frame = recording.rows[i].frame;
+    if (frame >= first && frame <= last && (frame - first) % stride == 0)
+      positions->push_back(static_cast<int64_t>(i));
+  }
+  if (positions->empty())
+    return absl::InvalidArgumentError(
+        absl::StrCat("no frame is left between ", first, " and ", last, "; the recording has ",
+                     recording.rows.front().frame, " to ", recording.rows.back().frame));
+  FrameSource selected;
+  selected.count = static_cast<int64_t>(positions->size());
+  selected.read = [positions, read = recording.frames.read](int64_t position) {
+    return read((*positions)[static_cast<size_t>(position)]);
+  };
+  return selected;
+}
+
+Progress ShowingProgress(std::string what, Interrupt& interrupt) {
+  constexpr double kSeconds = 2;
+  const auto watch = std::make_shared<Stopwatch>();
+  const auto shown = std::make_shared<double>(0);
+  return [what = std::move(what), &interrupt, watch, shown](int64_t done, int64_t total) {
+    if (watch->Seconds() - *shown > kSeconds) {
+      *shown = watch->Seconds();
+      PrintNote(absl::StrCat(what, ": ", done, " of ", total));
+    }
+    return !interrupt.stop().requested();
+  };
+}
+
+}  // namespace cleave
