@@ -42,7 +42,8 @@ TEST(Scanner, TellsTheEndAndBadNumbers) {
   Scanner large("99999999999999999999");
   large.Integer("an integer");
   EXPECT_FALSE(large.ok());
-  Scanner long_token(std::string(1'000'000, 'x'));
+  const std::string text(1'000'000, 'x');
+  Scanner long_token(text);
   long_token.Integer("an integer");
   EXPECT_LT(long_token.status().message().size(), 200u);
 }
