@@ -27,12 +27,11 @@ bool CheckLength(absl::string_view field, double value, Faults& faults) {
 }
 
 void CheckOrigin(const Vec3& origin, Faults& faults) {
-  constexpr absl::string_view kAxes = "xyz";
+  constexpr double kMost = limits::kMaxLength / 2;
   for (size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(origin[axis]) <= limits::kMaxLength / 2) continue;
-    faults.Error("origin",
-                 absl::StrCat(kAxes.substr(axis, 1), " = ", origin[axis], " m is outside [-",
-                              limits::kMaxLength / 2, ", ", limits::kMaxLength / 2, "] m"));
+    if (std::abs(origin[axis]) <= kMost) continue;
+    faults.Error(absl::StrCat("origin[", axis, "]"),
+                 absl::StrCat(origin[axis], " m is outside [-", kMost, ", ", kMost, "] m"));
   }
 }
 

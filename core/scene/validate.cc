@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/mesh/procedural.h"
 #include "core/scene/limits.h"
 #include "core/scene/selection.h"
 
@@ -78,16 +79,6 @@ class Checker {
 
 struct MeshSourceRules {
   Faults& faults;
-  Checker& check;
-
-  void Resolution(absl::string_view shape, const MeshResolution& resolution) const {
-    const std::string field = absl::StrCat(shape, ".resolution.");
-    check.Above(absl::StrCat(field, "cell_size"), resolution.cell_size, 0, limits::kMaxLength);
-    check.Within(absl::StrCat(field, "jitter"), resolution.jitter, 0, 0.4);
-  }
-  void Length(absl::string_view field, double value) const {
-    check.Above(field, value, 0, limits::kMaxLength);
-  }
 
   void operator()(std::monostate) const {
     faults.Error("mesh",
@@ -106,36 +97,12 @@ struct MeshSourceRules {
     faults.Error("mesh.asset", absl::StrCat("\"", asset.sha256.substr(0, limits::kMaxNameBytes),
                                             "\" is not 64 lower-case hex digits"));
   }
-  void operator()(const BoxMesh& box) const {
-    check.Coordinates("mesh.box.origin", box.origin);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      Length(absl::StrCat("mesh.box.size[", axis, "]"), box.size[axis]);
-    }
-    Resolution("mesh.box", box.resolution);
-  }
+  void operator()(const BoxMesh& box) const { faults.Append("mesh.box.", CheckShape(box)); }
   void operator()(const CylinderMesh& cylinder) const {
-    check.Coordinates("mesh.cylinder.origin", cylinder.origin);
-    Length("mesh.cylinder.radius", cylinder.radius);
-    Length("mesh.cylinder.height", cylinder.height);
-    Resolution("mesh.cylinder", cylinder.resolution);
+    faults.Append("mesh.cylinder.", CheckShape(cylinder));
   }
-  void operator()(const TubeMesh& tube) const {
-    check.Coordinates("mesh.tube.origin", tube.origin);
-    Length("mesh.tube.outer_radius", tube.outer_radius);
-    if (!(tube.inner_radius > 0 && tube.inner_radius < tube.outer_radius)) {
-      faults.Error("mesh.tube.inner_radius",
-                   absl::StrCat(tube.inner_radius, " is outside (0, ", tube.outer_radius,
-                                "), the outer radius"));
-    }
-    Length("mesh.tube.height", tube.height);
-    Resolution("mesh.tube", tube.resolution);
-  }
-  void operator()(const DiscMesh& disc) const {
-    check.Coordinates("mesh.disc.origin", disc.origin);
-    Length("mesh.disc.radius", disc.radius);
-    Length("mesh.disc.thickness", disc.thickness);
-    Resolution("mesh.disc", disc.resolution);
-  }
+  void operator()(const TubeMesh& tube) const { faults.Append("mesh.tube.", CheckShape(tube)); }
+  void operator()(const DiscMesh& disc) const { faults.Append("mesh.disc.", CheckShape(disc)); }
 };
 
 void CheckMaterials(const Scene& scene, Faults& faults, Checker& check) {
@@ -408,7 +375,7 @@ Faults ValidateScene(const Scene& scene) {
   Faults faults;
   Checker check(faults);
   check.Name("name", scene.name, false);
-  std::visit(MeshSourceRules{faults, check}, scene.mesh.source);
+  std::visit(MeshSourceRules{faults}, scene.mesh.source);
   check.Above("mesh.unit_scale", scene.mesh.unit_scale, 0, limits::kMaxUnitScale);
   CheckMaterials(scene, faults, check);
   std::set<std::string> names;

@@ -56,6 +56,8 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
       {"mesh.box.origin[2]", [](Scene& s) { std::get<BoxMesh>(s.mesh.source).origin[2] = kNan; }},
       {"mesh.box.resolution.cell_size",
        [](Scene& s) { std::get<BoxMesh>(s.mesh.source).resolution.cell_size = kInf; }},
+      {"mesh.box.resolution.cell_size",
+       [](Scene& s) { std::get<BoxMesh>(s.mesh.source).resolution.cell_size = 1e-7; }},
       {"mesh.box.resolution.jitter",
        [](Scene& s) { std::get<BoxMesh>(s.mesh.source).resolution.jitter = 0.5; }},
       {"mesh.tube.inner_radius",
