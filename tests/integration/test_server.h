@@ -30,6 +30,7 @@ class TestServer {
   std::string address() const { return "unix:" + (directory_ / "socket"); }
   std::string data() const { return directory_ / "data"; }
   std::string session_directory(const std::string& id) const { return data() + "/sessions/" + id; }
+  pid_t pid() const { return pid_; }
   std::string log() const { return ReadBytes(directory_ / "log"); }
   // Waits for the server to answer. Null, and a failed test, when it does not.
   std::unique_ptr<Client> Connect() const;
