@@ -34,11 +34,44 @@ inline double Sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline double Dot(Double4 a, Double4 b) { return Sum(a * b); }
 inline bool Any(Int64x4 mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
 
-// Four floats from anywhere in memory, widened.
-inline Double4 LoadFloats(const float* source) {
+// Four floats from anywhere in memory.
+inline Float4 LoadFloat4(const float* source) {
   Float4 narrow;
   std::memcpy(&narrow, source, sizeof(narrow));
+  return narrow;
+}
+
+// The compiler's own conversions go through two halves.
+inline Double4 Widen(Float4 narrow) {
+#ifdef __AVX__
+  return reinterpret_cast<Double4>(_mm256_cvtps_pd(reinterpret_cast<__m128>(narrow)));
+#else
   return __builtin_convertvector(narrow, Double4);
+#endif
+}
+inline Float4 Narrow(Double4 wide) {
+#ifdef __AVX__
+  return reinterpret_cast<Float4>(_mm256_cvtpd_ps(reinterpret_cast<__m256d>(wide)));
+#else
+  return __builtin_convertvector(wide, Float4);
+#endif
+}
+inline Double4 LoadFloats(const float* source) { return Widen(LoadFloat4(source)); }
+
+// One lane in all four.
+template <int kLane>
+Double4 SplatLane(Double4 v) {
+  return __builtin_shuffle(v, Int64x4{kLane, kLane, kLane, kLane});
+}
+
+// a * b + c, rounded once where the processor can: the same bits for every run of a build.
+inline Double4 MultiplyAdd(Double4 a, Double4 b, Double4 c) {
+#ifdef __FMA__
+  return reinterpret_cast<Double4>(_mm256_fmadd_pd(
+      reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b), reinterpret_cast<__m256d>(c)));
+#else
+  return a * b + c;
+#endif
 }
 
 // The square of sixteen numbers whose rows are given, turned about its diagonal: what was lane k of

@@ -60,9 +60,7 @@ void ElementBlocks(const TetBatch& batch, const SignedSvd& svd, const StiffnessS
 }
 
 void AddFloats(Double4 values, float* target) {
-  Float4 sum;
-  std::memcpy(&sum, target, sizeof(sum));
-  sum += __builtin_convertvector(values, Float4);
+  const Float4 sum = LoadFloat4(target) + Narrow(values);
   std::memcpy(target, &sum, sizeof(sum));
 }
 

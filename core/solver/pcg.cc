@@ -74,8 +74,7 @@ void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
       if (fixed != fixed_nodes_.end() && fixed->node == node) axes = (fixed++)->axes;
       if (!InvertBlock(columns, axes, inverse)) negative += 1;
       for (int k = 0; k < 3; ++k) {
-        inverse_diagonal_[static_cast<size_t>(node)].columns[k] =
-            __builtin_convertvector(unit * inverse[k], Float4);
+        inverse_diagonal_[static_cast<size_t>(node)].columns[k] = Narrow(unit * inverse[k]);
       }
     }
     return Splat(negative);

@@ -45,9 +45,9 @@ class PcgSolver {
 
   Double4 Precondition(size_t node, Double4 r) const {
     const InverseBlock& inverse = inverse_diagonal_[node];
-    return __builtin_convertvector(inverse.columns[0], Double4) * Splat(r[0]) +
-           __builtin_convertvector(inverse.columns[1], Double4) * Splat(r[1]) +
-           __builtin_convertvector(inverse.columns[2], Double4) * Splat(r[2]);
+    return MultiplyAdd(Widen(inverse.columns[0]), SplatLane<0>(r),
+                       MultiplyAdd(Widen(inverse.columns[1]), SplatLane<1>(r),
+                                   Widen(inverse.columns[2]) * SplatLane<2>(r)));
   }
 
   std::vector<FixedNode> fixed_nodes_;

@@ -17,9 +17,9 @@ inline Double4 RowSum(const float* block, const int32_t* column, const int32_t* 
   Double4 sum0 = Splat(0), sum1 = Splat(0), sum2 = Splat(0);
   for (; column != end; ++column, block += 9) {
     const Double4 d = x - values[*column];
-    sum0 += LoadFloats(block) * Splat(d[0]);
-    sum1 += LoadFloats(block + 3) * Splat(d[1]);
-    sum2 += LoadFloats(block + 6) * Splat(d[2]);
+    sum0 = MultiplyAdd(LoadFloats(block), SplatLane<0>(d), sum0);
+    sum1 = MultiplyAdd(LoadFloats(block + 3), SplatLane<1>(d), sum1);
+    sum2 = MultiplyAdd(LoadFloats(block + 6), SplatLane<2>(d), sum2);
   }
   return sum0 + sum1 + sum2;
 }
