@@ -3,14 +3,14 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build ccache pkg-config          # build
+  g++ cmake ninja-build ccache pkg-config    # build
   libgrpc++-dev protobuf-compiler-grpc libprotobuf-dev protobuf-compiler
   libabsl-dev libeigen3-dev libtbb-dev libzstd-dev libssl-dev libxxhash-dev
-  libpugixml-dev zlib1g-dev                        # VTU meshes: XML, compressed arrays
-  libcli11-dev                                     # verbs and help of the command line
-  python3-grpcio python3-protobuf                  # the Python client
-  libgtest-dev libgmock-dev python3                  # tests
-  python3-numpy python3-zstandard                  # the Python stream decoder
+  libpugixml-dev zlib1g-dev                 # VTU meshes: XML, compressed arrays
+  libcli11-dev                              # verbs and help of the command line
+  libembree-dev libpng-dev libwebp-dev      # pictures: rays, stills, animations
+  python3 python3-grpcio python3-protobuf python3-numpy python3-zstandard    # the Python client
+  libgtest-dev libgmock-dev                 # tests
 )
 
 missing=()

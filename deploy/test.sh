@@ -1,8 +1,14 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds everything and runs all tests.
+# Installs what is missing, builds everything and runs all tests; then sends damaged requests, scenes
+# and files to a build that reports every memory error and undefined behaviour.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./deploy/install.sh
+
 cmake --preset release >/dev/null
 cmake --build --preset release
 ctest --preset release -j "$(nproc)"
+
+cmake --preset asan >/dev/null
+cmake --build --preset asan --target mutation_tests
+ctest --preset asan -L mutation -j "$(nproc)"
