@@ -123,9 +123,9 @@ absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
   const double flatness =
       std::clamp(1 - (top - ground) / std::max(far_side - near_side, 1e-12), 0.0, 1.0);
   constexpr double kDegree = std::numbers::pi / 180;
-  const double azimuth =
-      options.azimuth.value_or(10 + 22 * std::clamp(slimness, 0.0, 1.0)) * kDegree;
-  const double elevation = options.elevation.value_or(18 + 22 * flatness) * kDegree;
+  const double wide = std::clamp(slimness, 0.0, 1.0);
+  const double azimuth = options.azimuth.value_or(20 + 12 * wide) * kDegree;
+  const double elevation = options.elevation.value_or(18 + flatness * (8 + 14 * wide)) * kDegree;
   const Vector3d level = std::cos(azimuth) * across - std::sin(azimuth) * along;
   const Vector3d forward = std::cos(elevation) * level - std::sin(elevation) * up;
   const Vector3d right = forward.cross(up).normalized();
@@ -170,7 +170,7 @@ absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraO
     tallest = std::max(tallest, std::abs(ToEigen(camera.up).dot(from)) / depth);
   }
   if (widest <= 0 || tallest <= 0) return 1.5;
-  return std::clamp(widest / tallest, 0.75, 2.2);
+  return std::clamp(widest / tallest, 0.75, 2.6);
 }
 
 }  // namespace cleave

@@ -28,7 +28,7 @@ struct CameraOptions {
   // The scene's up, any length but 0. Absent: chosen so that a long body lies and a plate lies
   // flat.
   std::optional<Vec3> up;
-  std::optional<double> azimuth;  // from the view square to the longest axis; default 10 to 32
+  std::optional<double> azimuth;  // from the view square to the longest axis; default 20 to 32
   std::optional<double>
       elevation;         // above the ground, in (-89, 89); default by the body's flatness
   double margin = 0.06;  // free part of the picture at each side, in [0, 0.45]
@@ -39,7 +39,7 @@ struct CameraOptions {
 absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                                    const CameraOptions& options);
 
-// Width by height of the picture in which the points fill the frame, held within [0.75, 2.2].
+// Width by height of the picture in which the points fill the frame, held within [0.75, 2.6].
 // Errors: those of FrameCamera.
 absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraOptions& options);
 

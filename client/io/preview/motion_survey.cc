@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
@@ -88,19 +89,27 @@ std::vector<int64_t> ChooseFrames(const MotionSurvey& survey, int count) {
   if (total <= static_cast<size_t>(std::max(count, 1))) return survey.positions;
   if (count <= 1) return {survey.positions.back()};
   const auto broken = static_cast<double>(survey.broken_edges.back());
-  std::vector<double> progress(total);  // from 0 to 1
-  for (size_t i = 0; i < total; ++i) {
-    const double passed = static_cast<double>(i) / static_cast<double>(total - 1);
-    const double torn = static_cast<double>(survey.broken_edges[i]) / std::max(broken, 1.0);
-    progress[i] = broken > 0 ? 0.5 * (passed + torn) : passed;
+  std::vector<double> steps(total, 0.0);  // how much happens from the frame before to this one
+  for (size_t i = 1; i < total; ++i) {
+    const auto torn = static_cast<double>(survey.broken_edges[i] - survey.broken_edges[i - 1]);
+    steps[i] = 1 / static_cast<double>(total - 1) + (broken > 0 ? std::max(torn, 0.0) / broken : 0);
   }
+  // A step that is worth more than one picture gets one, and the rest goes to the others.
+  for (int round = 0; round < 20; ++round) {
+    const double cap = std::accumulate(steps.begin(), steps.end(), 0.0) / (count - 1);
+    for (double& step : steps) step = std::min(step, cap);
+  }
+  std::vector<double> progress(total);  // from 0 to 1
+  std::partial_sum(steps.begin(), steps.end(), progress.begin());
+  const double all = progress.back();
+  for (double& value : progress) value /= all;
   std::vector<int64_t> chosen;
   size_t next = 0;
   for (int k = 0; k < count; ++k) {
     const double wanted = static_cast<double>(k) / (count - 1);
     // Enough frames stay for the pictures to come.
     const size_t last = total - static_cast<size_t>(count - k);
-    while (next < last && progress[next] < wanted - 1e-12) ++next;
+    while (next < last && progress[next] < wanted - 1e-9) ++next;
     chosen.push_back(survey.positions[next]);
     ++next;
   }

@@ -123,7 +123,7 @@ class Studio {
     DrawLegend(legend_, options_.width - margin - width, baseline, 0.85 * size, image);
   }
 
-  double LetterHeight() const { return std::clamp(options_.width / 64.0, 7.5, 24.0); }
+  double LetterHeight() const { return std::clamp(options_.width / 70.0, 7.5, 28.0); }
 
  private:
   Studio(Renderer renderer, const TetMesh& mesh, const FrameSource& frames,

@@ -46,10 +46,10 @@ struct AnimationOptions {
   double quality = 82;            // of WebP, 0 to 100
 };
 
-// All of these draw with one camera that holds the whole motion (but for crumbs: pieces of less
-// than 0.5 % of the nodes), and write time, pieces and broken edges into each picture. They read
-// the frames once for the camera (up to 256 of them) and once for the pictures. The same input
-// gives the same bytes for any thread count. `progress` may be empty; it counts pictures.
+// All of these draw with one camera that holds the whole motion (but for crumbs: pieces of fewer
+// than four nodes or 0.5 % of them), and write time, pieces and broken edges into each picture.
+// They read the frames once for the camera (up to 256 of them) and once for the pictures. The same
+// input gives the same bytes for any thread count. `progress` may be empty; it counts pictures.
 // Precondition: `mesh` passed CheckMesh. Errors: InvalidArgument for no frames, frames of another
 // mesh or bad options; Cancelled by `progress`; what reading frames gives.
 absl::StatusOr<Image> RenderStill(const TetMesh& mesh, const FrameSource& frames, int64_t position,

@@ -106,10 +106,11 @@ class Scene {
         offset_(2e-4f * radius_),
         // A hair below what stands on it, so that soles do not fight with it.
         ground_height_(static_cast<float>(camera.ground_height) - 1e-3f * radius_) {
-    // From the left and a little behind: shadows fall to the right where they show shape.
+    // Over the camera's right shoulder: FrameCamera stands to the right of the square view, so that
+    // the faces which it sees besides the front are lit, and shadows fall to the left and away.
     const Vector3f level = (forward_ - ground_up_ * ground_up_.dot(forward_)).normalized();
     const Vector3f side = ToFloat(camera.right);
-    sun_ = (ground_up_ - 0.75f * side + 0.15f * level).normalized();
+    sun_ = (ground_up_ + 0.60f * side - 0.62f * level).normalized();
     sun_strength_ = kSunShare / std::max(sun_.dot(ground_up_), 0.1f);
     normals_ = CornerNormals(surface);
     BuildColors();
