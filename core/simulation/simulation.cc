@@ -211,8 +211,12 @@ class BodySimulation final : public Simulation {
 
 absl::StatusOr<std::unique_ptr<Simulation>> Simulation::Create(const Scene& scene, TetMesh mesh,
                                                                const Options& options) {
-  CLEAVE_ASSIGN_OR_RETURN(Model model, BuildModel(scene, mesh));
-  return std::make_unique<BodySimulation>(scene, mesh, std::move(model), options.threads);
+  using Result = absl::StatusOr<std::unique_ptr<Simulation>>;
+  tbb::task_arena arena(std::max(1, options.threads));
+  return arena.execute([&]() -> Result {
+    CLEAVE_ASSIGN_OR_RETURN(Model model, BuildModel(scene, mesh));
+    return std::make_unique<BodySimulation>(scene, mesh, std::move(model), options.threads);
+  });
 }
 
 }  // namespace cleave

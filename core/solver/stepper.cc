@@ -1,5 +1,6 @@
 #include "core/solver/stepper.h"
 
+#include "absl/strings/str_cat.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
 
@@ -25,8 +26,12 @@ absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State
       parts.pop_back();
       continue;
     }
-    if (!absl::IsAborted(status) || part.halvings == model_.quality.max_step_halvings)
-      return status;
+    if (!absl::IsAborted(status)) return status;
+    if (part.halvings == model_.quality.max_step_halvings) {
+      return absl::AbortedError(absl::StrCat("from ", part.start, " s to ", part.end, " s, after ",
+                                             part.halvings,
+                                             " halvings of the step: ", status.message()));
+    }
     if (breaking_) CLEAVE_RETURN_IF_ERROR(breaking_->RollBack());
     ++report.step_halvings;
     const double middle = 0.5 * (part.start + part.end);
