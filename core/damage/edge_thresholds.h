@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/base/vec3.h"
 #include "core/mesh/incidence.h"
+#include "core/mesh/tet_mesh.h"
 
 namespace cleave {
 
@@ -15,6 +17,20 @@ namespace cleave {
 // has its neighbour's strength, and only edges wholly inside such a material are infinite.
 std::vector<double> EdgeThresholds(const Incidence& incidence,
                                    std::span<const double> tet_strengths);
+
+// A tet whose strength along a direction exceeds that across it.
+struct DirectionalStrength {
+  int32_t tet = 0;
+  Vec3 direction{0, 0, 0};  // unit
+  double ratio = 1;         // R >= 1
+};
+
+// The same, where in some tets strength depends on the edge's rest direction N: a tet's strength
+// counts 1 + (R - 1) (N . a)^2 times; of several records for a tet the largest counts. Source:
+// method note, section 2.
+std::vector<double> EdgeThresholds(const TetMesh& mesh, const Incidence& incidence,
+                                   std::span<const double> tet_strengths,
+                                   std::span<const DirectionalStrength> directional);
 
 }  // namespace cleave
 

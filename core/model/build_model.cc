@@ -13,6 +13,8 @@
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
 #include "core/model/elastic_term.h"
+#include "core/model/fibre_directions.h"
+#include "core/model/fibre_term.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
@@ -65,6 +67,46 @@ std::vector<LameConstants<double>> LameOf(const std::vector<Material>& materials
   for (const int32_t tet : tets)
     of_tet.push_back(of_material[static_cast<size_t>(material_of[static_cast<size_t>(tet)])]);
   return of_tet;
+}
+
+// The k-th family of fibres of every material that has as many, in tets that it stiffens. What it
+// does for strength is added to `directional`.
+FibreFamilyPart FamilyOf(const std::vector<Material>& materials,
+                         const std::vector<int32_t>& material_of, size_t k, const TetMesh& mesh,
+                         const MeshOrder& order, std::vector<DirectionalStrength>& directional) {
+  std::vector<std::vector<int32_t>> tets_of(materials.size());
+  for (size_t tet = 0; tet < material_of.size(); ++tet) {
+    const auto material = static_cast<size_t>(material_of[tet]);
+    if (k < materials[material].fibres.size())
+      tets_of[material].push_back(static_cast<int32_t>(tet));
+  }
+  struct Fibre {
+    int32_t tet;
+    Vec3 direction;
+    double stiffness;
+  };
+  std::vector<Fibre> fibres;
+  for (size_t m = 0; m < materials.size(); ++m) {
+    if (tets_of[m].empty()) continue;
+    const FibreFamily& family = materials[m].fibres[k];
+    std::vector<int32_t> old_tets = tets_of[m];
+    for (int32_t& tet : old_tets) tet = order.old_tet[static_cast<size_t>(tet)];
+    const std::vector<Vec3> directions = FibreDirections(family.direction, mesh, old_tets);
+    for (size_t i = 0; i < directions.size(); ++i) {
+      if (family.stiffness > 0) fibres.push_back({tets_of[m][i], directions[i], family.stiffness});
+      if (family.strength_ratio > 1)
+        directional.push_back({tets_of[m][i], directions[i], family.strength_ratio});
+    }
+  }
+  std::sort(fibres.begin(), fibres.end(),
+            [](const Fibre& a, const Fibre& b) { return a.tet < b.tet; });
+  FibreFamilyPart part;
+  for (const Fibre& fibre : fibres) {
+    part.tets.push_back(fibre.tet);
+    part.directions.push_back(fibre.direction);
+    part.stiffness.push_back(fibre.stiffness);
+  }
+  return part;
 }
 
 double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
@@ -134,6 +176,20 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
         MakeElasticTerm(law, *model.mesh, *model.incidence, std::move(tets), std::move(lame)));
   }
 
+  // Fibres, a term a family. Families of different materials that are the first of theirs, the
+  // second and so on, share one.
+  std::vector<DirectionalStrength> directional;
+  size_t families = 0;
+  for (const Material& material : scene.materials)
+    families = std::max(families, material.fibres.size());
+  for (size_t k = 0; k < families; ++k) {
+    const FibreFamilyPart family =
+        FamilyOf(scene.materials, material_of, k, mesh, model.order, directional);
+    if (family.tets.empty()) continue;
+    model.tet_terms.push_back(
+        MakeFibreTerm(*model.mesh, *model.incidence, family, scene.fracture.stress));
+  }
+
   model.quality = scene.quality;
 
   // Gravity.
@@ -159,7 +215,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
   if (breaks) {
     FracturePart& part = model.fracture.emplace();
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    if (scene.materials.size() == 1) {
+    if (scene.materials.size() == 1 && directional.empty()) {
       part.edge_thresholds = {*scene.materials[0].tensile_strength};
     } else {
       std::vector<double> strengths(material_of.size());
@@ -167,7 +223,9 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
         const Material& material = scene.materials[static_cast<size_t>(material_of[tet])];
         strengths[tet] = material.tensile_strength.value_or(kNever);
       }
-      part.edge_thresholds = EdgeThresholds(*model.incidence, strengths);
+      part.edge_thresholds = directional.empty() ? EdgeThresholds(*model.incidence, strengths)
+                                                 : EdgeThresholds(*model.mesh, *model.incidence,
+                                                                  strengths, directional);
     }
     part.settings.simultaneity = scene.fracture.simultaneity;
     part.max_passes = scene.fracture.max_passes;

@@ -7,15 +7,11 @@
 #include "core/material/isotropic_stiffness.h"
 #include "core/material/st_venant_kirchhoff.h"
 #include "core/material/stable_neo_hookean.h"
+#include "core/model/batch_scatter.h"
 #include "core/model/tet_batches.h"
 
 namespace cleave {
 namespace {
-
-// Element matrices of a batch: the blocks of its six edges, each entry of four tets.
-struct BatchBlocks {
-  Double4 block[6][9];  // [kTetEdges][column by column]
-};
 
 // Source: method note, section 5; in the frame of the singular values the second derivative is
 // sparse, so the blocks are built there from turned gradients and turned back.
@@ -55,25 +51,6 @@ void ElementBlocks(const TetBatch& batch, const SignedSvd& svd, const StiffnessS
                                             half(row, 1) * svd.u(column, 1) +
                                             half(row, 2) * svd.u(column, 2);
       }
-    }
-  }
-}
-
-void AddFloats(Double4 values, float* target) {
-  const Float4 sum = LoadFloat4(target) + Narrow(values);
-  std::memcpy(target, &sum, sizeof(sum));
-}
-
-void ScatterBlocks(const TetBatch& batch, int lanes, BatchBlocks& blocks, float* target) {
-  for (size_t edge = 0; edge < 6; ++edge) {
-    Double4* block = blocks.block[edge];
-    Transpose(block[0], block[1], block[2], block[3]);
-    Transpose(block[4], block[5], block[6], block[7]);
-    for (int lane = 0; lane < lanes; ++lane) {
-      float* at = target + 9 * static_cast<int64_t>(batch.edges[edge][static_cast<size_t>(lane)]);
-      AddFloats(block[lane], at);
-      AddFloats(block[4 + lane], at + 4);
-      at[8] += static_cast<float>(block[8][lane]);
     }
   }
 }
@@ -125,15 +102,7 @@ class ElasticTerm final : public TetTerm {
           }
           force[0][axis] = -(force[1][axis] + force[2][axis] + force[3][axis]);
         }
-        const int lanes = tets_.lanes(b);
-        for (size_t vertex = 0; vertex < 4; ++vertex) {
-          Double4* of_vertex = force[vertex];
-          of_vertex[3] = Splat(0);
-          Transpose(of_vertex[0], of_vertex[1], of_vertex[2], of_vertex[3]);
-          for (int lane = 0; lane < lanes; ++lane)
-            forces[static_cast<size_t>(batch.nodes[vertex][static_cast<size_t>(lane)])] +=
-                of_vertex[lane];
-        }
+        ScatterForces(batch, tets_.lanes(b), force, forces);
       }
       chunk_energy_[static_cast<size_t>(chunk)] = Sum(energy);
     });

@@ -8,6 +8,7 @@
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
 #include "core/material/moduli.h"
+#include "core/model/fibre_term.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/tet_batches.h"
 
@@ -70,9 +71,17 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   const bool breaks =
       std::any_of(scene.materials.begin(), scene.materials.end(),
                   [](const Material& material) { return material.tensile_strength.has_value(); });
+  size_t families = 0;
+  bool directional = false;
+  for (const Material& material : scene.materials) {
+    families = std::max(families, material.fibres.size());
+    for (const FibreFamily& family : material.fibres)
+      directional = directional || family.strength_ratio > 1;
+  }
+  if (families > 0) add("fibres", static_cast<int64_t>(families) * FibreTermBytes(tets));
   if (breaks) {
     add("fracture",
-        (uniform ? 1 : edges) * kDouble + edges * kInt +                         // thresholds, ids
+        (uniform && !directional ? 1 : edges) * kDouble + edges * kInt +         // thresholds, ids
             tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
             edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
             nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses

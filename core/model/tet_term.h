@@ -36,6 +36,12 @@ class TetTerm {
   // Bytes that this term holds.
   virtual int64_t bytes() const = 0;
 
+  // Chooses the branch of an energy that jumps, at these displacements; it holds until the next
+  // call. True where that changed any tet's energy.
+  virtual bool ChooseBranches(const NodalVector& displacements) {
+    (void)displacements;
+    return false;
+  }
   // Adds -dPsi/dx (N) at displacements from rest (m) to `forces`; returns the energy, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
   // Adds every tet's second derivative to `blocks`.

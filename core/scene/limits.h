@@ -16,6 +16,11 @@ inline constexpr double kMaxYoungsModulus = 1e13;  // Pa
 inline constexpr double kMaxPoissonRatio = 0.4999;
 inline constexpr double kLockingPoissonRatio = 0.45;  // a warning from here on
 inline constexpr double kFloppyPoissonRatio = 0.1;  // a collapsed tet costs little energy below it
+// More families cost more than they show: three span all stiffness directions.
+inline constexpr int64_t kMaxFibreFamilies = 4;
+inline constexpr double kHardFibreRatio = 1e6;      // of Young's modulus; a warning from here on
+inline constexpr double kMaxStrengthRatio = 3;      // beyond it damage smears and follows no fibre
+inline constexpr int64_t kMaxCurvePoints = 10'000;  // every tet looks at every segment
 inline constexpr double kMaxDensity = 1e6;          // kg/m^3; osmium has 22 590
 
 inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps

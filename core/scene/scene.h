@@ -42,6 +42,39 @@ enum class ElasticLaw {
   kStVenantKirchhoff,
 };
 
+// The same direction everywhere.
+struct ConstantDirection {
+  Vec3 vector{0, 0, 0};  // any length but 0
+};
+// A fixed mixture of the three directions of the cylindrical frame of an axis: away from it, around
+// it and along it. On the axis itself, which has no outward direction, any will do.
+struct CylindricalDirection {
+  Vec3 center{0, 0, 0};   // m, a point of the axis
+  Vec3 axis{0, 0, 1};     // any length but 0
+  Vec3 mixture{0, 0, 1};  // outward, around, along; any length but 0
+};
+// A direction for every tet of the mesh, in its order.
+struct TetDirections {
+  std::vector<Vec3> vectors;  // any length but 0
+};
+struct Polyline {
+  std::vector<Vec3> points;  // m
+};
+// The directions of curves nearby: the mean over their segments, weighted by the inverse fourth
+// power of distance; a curve and its reverse are the same.
+struct CurveDirections {
+  std::vector<Polyline> curves;
+};
+using FibreDirection = std::variant<std::monostate, ConstantDirection, CylindricalDirection,
+                                    TetDirections, CurveDirections>;
+
+// Fibres in a material, which resist changes of their length (method note, section 5).
+struct FibreFamily {
+  double stiffness = 0;  // Pa, what Young's modulus along the fibre gains
+  FibreDirection direction;
+  double strength_ratio = 1;  // edges along the fibre are this much stronger than those across
+};
+
 // A material and the regions that it fills. Later materials win where regions overlap.
 struct Material {
   std::string name;
@@ -51,6 +84,7 @@ struct Material {
   double poisson_ratio = 0;
   double density = 0;                      // kg/m^3
   std::optional<double> tensile_strength;  // Pa, threshold of edge stress; absent: never breaks
+  std::vector<FibreFamily> fibres;
 };
 
 struct BoxSelector {
@@ -107,11 +141,18 @@ struct InitialVelocity {
   Vec3 center{0, 0, 0};            // m
 };
 
+// Which stress breaks edges of a material with fibres.
+enum class FractureStress {
+  kMatrix,  // that of the isotropic solid, so that cracks follow the fibres
+  kTotal,
+};
+
 // How fracture is staged within a step (method note, section 7). Used only where some material has
 // a tensile strength.
 struct Fracture {
   int32_t max_passes = 60;    // break-and-solve passes a step
   double simultaneity = 0.9;  // edges at this share of the worst failure ratio break with it
+  FractureStress stress = FractureStress::kMatrix;
 };
 
 struct Timing {

@@ -8,74 +8,13 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "core/mesh/procedural.h"
+#include "core/scene/checker.h"
 #include "core/scene/limits.h"
+#include "core/scene/material_rules.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
 namespace {
-
-std::string At(absl::string_view list, size_t index, absl::string_view field = "") {
-  return absl::StrCat(list, "[", index, "]", field.empty() ? "" : ".", field);
-}
-
-// Range checks that name field, value and range. All refuse NaN, which fails every comparison.
-class Checker {
- public:
-  explicit Checker(Faults& faults) : faults_(faults) {}
-
-  // (low, high]
-  void Above(absl::string_view field, double value, double low, double high) {
-    if (value > low && value <= high) return;
-    faults_.Error(field, absl::StrCat(value, " is outside (", low, ", ", high, "]"));
-  }
-  // [low, high]
-  void Within(absl::string_view field, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    faults_.Error(field, absl::StrCat(value, " is outside [", low, ", ", high, "]"));
-  }
-  // (low, high)
-  void Between(absl::string_view field, double value, double low, double high) {
-    if (value > low && value < high) return;
-    faults_.Error(field, absl::StrCat(value, " is outside (", low, ", ", high, ")"));
-  }
-  void Count(absl::string_view field, int64_t value, int64_t low, int64_t high) {
-    if (value >= low && value <= high) return;
-    faults_.Error(field, absl::StrCat(value, " is outside [", low, ", ", high, "]"));
-  }
-  void Coordinates(absl::string_view field, const Vec3& value) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      Within(absl::StrCat(field, "[", axis, "]"), value[axis], -limits::kMaxLength,
-             limits::kMaxLength);
-    }
-  }
-  void Finite(absl::string_view field, const Vec3& value) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      if (std::isfinite(value[axis])) continue;
-      faults_.Error(absl::StrCat(field, "[", axis, "]"),
-                    absl::StrCat(value[axis], " is not a finite number"));
-    }
-  }
-  void Direction(absl::string_view field, const Vec3& value) {
-    Finite(field, value);
-    if (value == Vec3{0, 0, 0}) faults_.Error(field, "[0, 0, 0] has no direction");
-  }
-  void Name(absl::string_view field, absl::string_view name, bool required) {
-    if (required && name.empty()) faults_.Error(field, "is empty; a name is required");
-    if (static_cast<int64_t>(name.size()) > limits::kMaxNameBytes) {
-      faults_.Error(field, absl::StrCat("has ", name.size(), " bytes; at most ",
-                                        limits::kMaxNameBytes, " are allowed"));
-    }
-  }
-  // False when the list is too long to be looked through.
-  bool List(absl::string_view field, size_t size, int64_t most = limits::kMaxListItems) {
-    if (static_cast<int64_t>(size) <= most) return true;
-    faults_.Error(field, absl::StrCat("has ", size, " items; at most ", most, " are allowed"));
-    return false;
-  }
-
- private:
-  Faults& faults_;
-};
 
 struct MeshSourceRules {
   Faults& faults;
@@ -104,44 +43,6 @@ struct MeshSourceRules {
   void operator()(const TubeMesh& tube) const { faults.Append("mesh.tube.", CheckShape(tube)); }
   void operator()(const DiscMesh& disc) const { faults.Append("mesh.disc.", CheckShape(disc)); }
 };
-
-void CheckMaterials(const Scene& scene, Faults& faults, Checker& check) {
-  if (scene.materials.empty()) faults.Error("materials", "is empty; a body needs a material");
-  if (!check.List("materials", scene.materials.size())) return;
-  for (size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& material = scene.materials[i];
-    const auto at = [&](absl::string_view field) { return At("materials", i, field); };
-    check.Name(at("name"), material.name, false);
-    check.Above(at("youngs_modulus"), material.youngs_modulus, 0, limits::kMaxYoungsModulus);
-    check.Within(at("poisson_ratio"), material.poisson_ratio, 0, limits::kMaxPoissonRatio);
-    check.Above(at("density"), material.density, 0, limits::kMaxDensity);
-    if (check.List(at("regions"), material.regions.size())) {
-      for (size_t k = 0; k < material.regions.size(); ++k) {
-        check.Name(At(at("regions"), k), material.regions[k], true);
-      }
-    }
-    if (material.poisson_ratio > limits::kLockingPoissonRatio) {
-      faults.Warning(
-          at("poisson_ratio"),
-          absl::StrCat(material.poisson_ratio, " is above ", limits::kLockingPoissonRatio,
-                       ": linear tets lock, the body will be too stiff in bending"));
-    } else if (material.poisson_ratio < limits::kFloppyPoissonRatio) {
-      faults.Warning(at("poisson_ratio"),
-                     absl::StrCat(material.poisson_ratio, " is below ", limits::kFloppyPoissonRatio,
-                                  ": crushed tets resist little"));
-    }
-    if (material.tensile_strength.has_value()) {
-      const double strength = *material.tensile_strength;
-      if (!(strength >= 0)) {
-        faults.Error(at("tensile_strength"), absl::StrCat(strength, " is outside [0, inf]"));
-      } else if (strength > 10 * material.youngs_modulus) {
-        faults.Warning(
-            at("tensile_strength"),
-            absl::StrCat(strength, " Pa is over 10 times Young's modulus: never breaks"));
-      }
-    }
-  }
-}
 
 struct SelectorRules {
   std::string field;
@@ -392,6 +293,7 @@ Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh) {
   const RegionIndex regions(mesh);
   CheckCoverage(scene, mesh, regions, faults);
   CheckSelections(scene, mesh, regions, faults);
+  CheckFibreArrays(scene, mesh, faults);
   return faults;
 }
 

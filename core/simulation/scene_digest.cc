@@ -33,6 +33,24 @@ void PutSelector(const Selector& selector, ByteWriter& out) {
   }
 }
 
+void PutFibres(const FibreFamily& family, ByteWriter& out) {
+  out.Put(family.stiffness);
+  out.Put(family.strength_ratio);
+  out.Put<uint64_t>(family.direction.index());
+  if (const auto* constant = std::get_if<ConstantDirection>(&family.direction)) {
+    out.Put(constant->vector);
+  } else if (const auto* cylindrical = std::get_if<CylindricalDirection>(&family.direction)) {
+    out.Put(cylindrical->center);
+    out.Put(cylindrical->axis);
+    out.Put(cylindrical->mixture);
+  } else if (const auto* per_tet = std::get_if<TetDirections>(&family.direction)) {
+    out.PutVector(per_tet->vectors);
+  } else if (const auto* directions = std::get_if<CurveDirections>(&family.direction)) {
+    out.Put<uint64_t>(directions->curves.size());
+    for (const Polyline& curve : directions->curves) out.PutVector(curve.points);
+  }
+}
+
 template <typename T>
 void Update(const std::vector<T>& items, StateHash& hash) {
   const uint64_t count = items.size();
@@ -60,6 +78,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     out.Put(material.density);
     out.Put<uint8_t>(material.tensile_strength.has_value());
     out.Put(material.tensile_strength.value_or(0));
+    out.Put<uint64_t>(material.fibres.size());
+    for (const FibreFamily& family : material.fibres) PutFibres(family, out);
   }
   out.Put<uint64_t>(scene.node_sets.size());
   for (const NodeSet& set : scene.node_sets) {
@@ -91,6 +111,7 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.gravity.value_or(Vec3{0, 0, 0}));
   out.Put(scene.fracture.max_passes);
   out.Put(scene.fracture.simultaneity);
+  out.Put(static_cast<uint32_t>(scene.fracture.stress));
   out.Put(scene.timing.frames_per_second);
   out.Put(scene.timing.steps_per_frame);
   out.Put(scene.quality.newton_iterations);

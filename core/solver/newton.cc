@@ -82,6 +82,12 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
   force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
 }
 
+bool NewtonSolver::ChooseBranches(const NodalVector& displacements) {
+  bool changed = false;
+  for (const auto& term : model_.tet_terms) changed |= term->ChooseBranches(displacements);
+  return changed;
+}
+
 absl::Status NewtonSolver::NotConverged(double relative_residual) const {
   size_t worst = 0;
   double largest = -1;
@@ -134,6 +140,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
 
   {
     ScopedTimer timer(report.assembly_seconds);
+    ChooseBranches(displacements);
     Evaluate(start, dt, displacements);
     initial_elastic_energy_ = elastic_energy_;
   }
@@ -199,6 +206,8 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       last_share = share;
       last_norm = norm;
       displacements.swap(trial_);
+      // Energies of two branches are not compared: the next iteration starts from the new one.
+      if (ChooseBranches(displacements)) Evaluate(start, dt, displacements);
       continue;
     }
     Evaluate(start, dt, displacements);

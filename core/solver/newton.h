@@ -55,6 +55,8 @@ class NewtonSolver {
   // Sets `search_` by a linear solve at `displacements`; returns whether it leads downhill.
   absl::StatusOr<bool> FindSearchDirection(const NodalVector& displacements, Curvature curvature,
                                            const StopFlag& stop, StepReport& report);
+  // Of all terms; true where any changed.
+  bool ChooseBranches(const NodalVector& displacements);
   absl::Status NotConverged(double relative_residual) const;
 
   const Model& model_;

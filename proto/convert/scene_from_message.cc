@@ -121,6 +121,49 @@ class Converter {
     }
   }
 
+  // Triples of numbers.
+  std::vector<Vec3> Vectors(const std::string& field, const Numbers& numbers) {
+    if (numbers.size() % 3 != 0) {
+      faults_.Error(
+          field, absl::StrCat("has ", numbers.size(), " numbers; a multiple of three is required"));
+    }
+    std::vector<Vec3> vectors(static_cast<size_t>(numbers.size() / 3));
+    for (size_t k = 0; k < 3 * vectors.size(); ++k)
+      vectors[k / 3][k % 3] = numbers[static_cast<int>(k)];
+    return vectors;
+  }
+
+  FibreDirection Direction(const std::string& field, const v1::FibreFamily& message) {
+    switch (message.direction_case()) {
+      case v1::FibreFamily::kConstant:
+        return ConstantDirection{
+            RequiredVector(field + ".constant.vector", message.constant().vector(), {1, 0, 0})};
+      case v1::FibreFamily::kCylindrical: {
+        const v1::CylindricalDirection& from = message.cylindrical();
+        CylindricalDirection cylindrical;
+        const std::string frame = field + ".cylindrical.";
+        cylindrical.center = Vector(frame + "center", from.center(), cylindrical.center);
+        cylindrical.axis = Vector(frame + "axis", from.axis(), cylindrical.axis);
+        cylindrical.mixture = Vector(frame + "mixture", from.mixture(), cylindrical.mixture);
+        return cylindrical;
+      }
+      case v1::FibreFamily::kPerTet:
+        return TetDirections{Vectors(field + ".per_tet.vectors", message.per_tet().vectors())};
+      case v1::FibreFamily::kCurves: {
+        CurveDirections directions;
+        for (int i = 0; i < message.curves().curves_size(); ++i) {
+          directions.curves.push_back(
+              {Vectors(absl::StrCat(field, ".curves.curves[", i, "].points"),
+                       message.curves().curves(i).points())});
+        }
+        return directions;
+      }
+      case v1::FibreFamily::DIRECTION_NOT_SET:
+        break;
+    }
+    return std::monostate{};
+  }
+
   Material OneMaterial(const std::string& field, const v1::Material& message) {
     Material material;
     material.name = message.name();
@@ -130,6 +173,13 @@ class Converter {
     material.poisson_ratio = message.poisson_ratio();
     material.density = message.density();
     if (message.has_tensile_strength()) material.tensile_strength = message.tensile_strength();
+    for (int i = 0; i < message.fibres_size(); ++i) {
+      const v1::FibreFamily& from = message.fibres(i);
+      FibreFamily& family = material.fibres.emplace_back();
+      family.stiffness = from.stiffness();
+      family.direction = Direction(absl::StrCat(field, ".fibres[", i, "]"), from);
+      if (from.has_strength_ratio()) family.strength_ratio = from.strength_ratio();
+    }
     return material;
   }
 
@@ -193,10 +243,23 @@ class Converter {
   Faults& faults_;
 };
 
-void ReadSettings(const v1::Scene& message, Scene& scene) {
+void ReadSettings(const v1::Scene& message, Scene& scene, Faults& faults) {
   const v1::Fracture& fracture = message.fracture();
   if (fracture.has_max_passes()) scene.fracture.max_passes = fracture.max_passes();
   if (fracture.has_simultaneity()) scene.fracture.simultaneity = fracture.simultaneity();
+
+  switch (fracture.stress()) {
+    case v1::FRACTURE_STRESS_UNSPECIFIED:
+    case v1::FRACTURE_STRESS_MATRIX:
+      scene.fracture.stress = FractureStress::kMatrix;
+      break;
+    case v1::FRACTURE_STRESS_TOTAL:
+      scene.fracture.stress = FractureStress::kTotal;
+      break;
+    default:
+      faults.Error("fracture.stress",
+                   absl::StrCat(static_cast<int>(fracture.stress()), " is not a FractureStress"));
+  }
 
   const v1::Timing& timing = message.timing();
   if (timing.has_frames_per_second()) scene.timing.frames_per_second = timing.frames_per_second();
@@ -260,7 +323,7 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   if (!message.gravity().empty()) {
     scene.gravity = convert.Vector("gravity", message.gravity(), {0, 0, 0});
   }
-  ReadSettings(message, scene);
+  ReadSettings(message, scene, faults);
   scene.seed = message.seed();
   return scene;
 }

@@ -74,6 +74,32 @@ struct WriteSelector {
   }
 };
 
+struct WriteDirection {
+  v1::FibreFamily* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const ConstantDirection& constant) const {
+    Write(constant.vector, message->mutable_constant()->mutable_vector());
+  }
+  void operator()(const CylindricalDirection& cylindrical) const {
+    v1::CylindricalDirection* to = message->mutable_cylindrical();
+    Write(cylindrical.center, to->mutable_center());
+    Write(cylindrical.axis, to->mutable_axis());
+    Write(cylindrical.mixture, to->mutable_mixture());
+  }
+  void operator()(const TetDirections& directions) const {
+    Numbers* to = message->mutable_per_tet()->mutable_vectors();
+    for (const Vec3& vector : directions.vectors) Write(vector, to);
+  }
+  void operator()(const CurveDirections& directions) const {
+    for (const Polyline& curve : directions.curves) {
+      v1::Polyline* to = message->mutable_curves()->add_curves();
+      for (const Vec3& point : curve.points) Write(point, to->mutable_points());
+    }
+    message->mutable_curves();
+  }
+};
+
 v1::ElasticLaw MessageFromLaw(ElasticLaw law) {
   switch (law) {
     case ElasticLaw::kInvertibleNeoHookean:
@@ -108,6 +134,9 @@ void WriteMotion(const Motion& motion, v1::Motion* message) {
 void WriteSettings(const Scene& scene, v1::Scene& message) {
   message.mutable_fracture()->set_max_passes(scene.fracture.max_passes);
   message.mutable_fracture()->set_simultaneity(scene.fracture.simultaneity);
+  message.mutable_fracture()->set_stress(scene.fracture.stress == FractureStress::kTotal
+                                             ? v1::FRACTURE_STRESS_TOTAL
+                                             : v1::FRACTURE_STRESS_MATRIX);
 
   v1::Timing* timing = message.mutable_timing();
   timing->set_frames_per_second(scene.timing.frames_per_second);
@@ -144,6 +173,12 @@ v1::Scene MessageFromScene(const Scene& scene) {
     to->set_density(material.density);
     if (material.tensile_strength.has_value()) {
       to->set_tensile_strength(*material.tensile_strength);
+    }
+    for (const FibreFamily& family : material.fibres) {
+      v1::FibreFamily* fibres = to->add_fibres();
+      fibres->set_stiffness(family.stiffness);
+      std::visit(WriteDirection{fibres}, family.direction);
+      fibres->set_strength_ratio(family.strength_ratio);
     }
   }
   for (const NodeSet& set : scene.node_sets) {

@@ -67,6 +67,22 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene = minimal;
   scene.materials[0].tensile_strength = 1e5;
   expect_adds(scene, "fracture");
+  scene = minimal;
+  scene.materials[0].fibres.push_back({1e6, ConstantDirection{{1, 0, 0}}, 1});
+  expect_adds(scene, "fibres");
+}
+
+TEST(Footprint, FibresTakeTheBytesThatWerePlanned) {
+  const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  const FibreFamily family{1e6, ConstantDirection{{1, 0, 0}}, 1};
+  scene.materials[0].fibres = {family, family};
+  const Model model = *BuildModel(scene, mesh);
+  ASSERT_EQ(model.tet_terms.size(), 3u);
+  const Footprint footprint =
+      PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+  EXPECT_EQ(BytesOf(footprint, "fibres"),
+            model.tet_terms[1]->bytes() + model.tet_terms[2]->bytes());
 }
 
 TEST(Footprint, ASecondMaterialCostsARecordABatch) {

@@ -46,8 +46,40 @@ TEST(ValidateScene, AcceptsAGoodSceneWithoutAWord) {
   EXPECT_EQ(faults.warning_count(), 0);
 }
 
+FibreFamily FibresAlong(FibreDirection direction) {
+  FibreFamily family;
+  family.stiffness = 1e6;
+  family.direction = std::move(direction);
+  return family;
+}
+
 TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
+  const auto fibres = [](FibreDirection direction) {
+    return [direction](Scene& s) { s.materials[0].fibres = {FibresAlong(direction)}; };
+  };
   const std::vector<Case> cases = {
+      {"materials[0].fibres[0]", fibres(std::monostate())},
+      {"materials[0].fibres", [](Scene& s) { s.materials[0].fibres.resize(5); }},
+      {"materials[0].fibres[0].stiffness",
+       [](Scene& s) {
+         s.materials[0].fibres = {FibresAlong(ConstantDirection{{1, 0, 0}})};
+         s.materials[0].fibres[0].stiffness = -1;
+       }},
+      {"materials[0].fibres[0].strength_ratio",
+       [](Scene& s) {
+         s.materials[0].fibres = {FibresAlong(ConstantDirection{{1, 0, 0}})};
+         s.materials[0].fibres[0].strength_ratio = 0.5;
+       }},
+      {"materials[0].fibres[0].constant.vector", fibres(ConstantDirection{{0, 0, 0}})},
+      {"materials[0].fibres[0].constant.vector[1]", fibres(ConstantDirection{{1, kNan, 0}})},
+      {"materials[0].fibres[0].cylindrical.axis",
+       fibres(CylindricalDirection{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}})},
+      {"materials[0].fibres[0].cylindrical.mixture",
+       fibres(CylindricalDirection{{0, 0, 0}, {0, 0, 1}, {0, 0, 0}})},
+      {"materials[0].fibres[0].per_tet.vectors[1]", fibres(TetDirections{{{1, 0, 0}, {0, 0, 0}}})},
+      {"materials[0].fibres[0].curves.curves", fibres(CurveDirections{})},
+      {"materials[0].fibres[0].curves.curves[0].points",
+       fibres(CurveDirections{{Polyline{{{1, 0, 0}}}}})},
       {"mesh", [](Scene& s) { s.mesh.source = std::monostate(); }},
       {"mesh.file", [](Scene& s) { s.mesh.source = MeshFile{"bar.msh"}; }},
       {"mesh.asset", [](Scene& s) { s.mesh.source = MeshAsset{"abc"}; }},
@@ -159,9 +191,11 @@ TEST(ValidateScene, WarnsWhereTheResultWillBePoor) {
   scene.materials[0].poisson_ratio = 0.47;
   scene.materials[0].tensile_strength = 1e9;
   scene.timing.frames_per_second = 1;
+  scene.materials[0].fibres = {FibresAlong(ConstantDirection{{0, 2, 0}})};
+  scene.materials[0].fibres[0].stiffness = 1e12;
   const Faults faults = ValidateScene(scene);
   EXPECT_TRUE(faults.ok());
-  EXPECT_EQ(faults.warning_count(), 3);
+  EXPECT_EQ(faults.warning_count(), 5);
 }
 
 TEST(ValidateScene, AcceptsInfiniteStrengthAndHalfSpaces) {
@@ -196,6 +230,10 @@ TEST(ValidateSceneWithMesh, NamesTheFieldOfEveryKindOfFault) {
          s.node_sets[0].select[0] = SphereSelector{{9, 9, 9}, 1};
        }},
       {"motions[1].node_set", [](Scene& s) { s.motions.push_back(s.motions[0]); }},
+      {"materials[0].fibres[0].per_tet.vectors",
+       [](Scene& s) {
+         s.materials[0].fibres = {FibresAlong(TetDirections{{{1, 0, 0}, {0, 1, 0}}})};
+       }},
   };
   for (const Case& spoiled : cases) {
     Scene scene = GoodScene();

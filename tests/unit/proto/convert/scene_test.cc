@@ -33,6 +33,33 @@ constexpr char kEveryField[] = R"pb(
     density: 1900
     tensile_strength: 3e6
     law: ELASTIC_LAW_COROTATED_LINEAR
+    fibres {
+      stiffness: 1e6
+      constant { vector: [ 0, 1, 0 ] }
+      strength_ratio: 2
+    }
+    fibres {
+      stiffness: 2e6
+      cylindrical {
+        center: [ 1, 1, 0 ]
+        axis: [ 0, 1, 0 ]
+        mixture: [ 1, 2, 3 ]
+      }
+      strength_ratio: 1.5
+    }
+    fibres {
+      stiffness: 3e6
+      per_tet { vectors: [ 1, 0, 0, 0, 1, 0 ] }
+      strength_ratio: 1.25
+    }
+    fibres {
+      stiffness: 4e6
+      curves {
+        curves { points: [ 0, 0, 0, 1, 0, 0 ] }
+        curves { points: [ 0, 0, 1, 0, 2, 0, 1, 1, 1 ] }
+      }
+      strength_ratio: 3
+    }
   }
   node_sets {
     name: "grip"
@@ -75,7 +102,7 @@ constexpr char kEveryField[] = R"pb(
     center: [ 0, 0, 3 ]
   }
   gravity: [ 0, 0, -9.81 ]
-  fracture { max_passes: 7 simultaneity: 0.8 }
+  fracture { max_passes: 7 simultaneity: 0.8 stress: FRACTURE_STRESS_TOTAL }
   timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
   quality {
     newton_iterations: 4
