@@ -152,9 +152,13 @@ Faults CheckShape(const TubeMesh& shape) {
                                               shape.outer_radius, " m"));
     return faults;
   }
+  const double wall = shape.outer_radius - shape.inner_radius;
+  // A chord c of the inner circle leaves it by c^2 / (8 radius).
+  const double chord = std::sqrt(2 * shape.inner_radius * wall);
   CheckCells(BodyOf(shape), shape.resolution,
              {{shape.inner_radius, "the inner radius"},
-              {kMaxCellRatio * (shape.outer_radius - shape.inner_radius), "10 times the wall"},
+              {kMaxCellRatio * wall, "10 times the wall"},
+              {chord, "a chord that cuts a quarter into the wall"},
               {kMaxCellRatio * shape.height, "10 times the height"}},
              faults);
   return faults;

@@ -71,6 +71,7 @@ std::vector<Vec3> ImagesOf(const PlacedPoints& points, const Body& body, double 
   for (size_t node = 0; node < points.positions.size(); ++node) {
     const Vec3& p = points.positions[node];
     const double radius = std::hypot(p[0], p[1]);
+    if (radius == 0) continue;  // no direction to be mirrored in
     for (const double side : {body.outer_radius, body.inner_radius}) {
       if (side == 0 || points.bindings[node].radius == side || std::abs(radius - side) > reach)
         continue;

@@ -114,7 +114,7 @@ TEST_P(EveryLayout, ThinBodiesAndSingleCellsAreSound) {
   Sound(Disc(GetParam(), 0.2));
   Sound(CylinderMesh{{0, 0, 0}, 0.1, 0.1, {GetParam(), 0.1, 0.2, 1}});
   Sound(CylinderMesh{{0, 0, 0}, 0.1, 4, {GetParam(), 0.1, 0.4, 1}});
-  Sound(TubeMesh{{0, 0, 0}, 0.11, 0.1, 0.5, {GetParam(), 0.05, 0.2, 1}});
+  Sound(TubeMesh{{0, 0, 0}, 0.11, 0.1, 0.5, {GetParam(), 0.04, 0.2, 1}});
   Sound(TubeMesh{{0, 0, 0}, 1, 0.1, 0.2, {GetParam(), 0.1, 0.2, 1}});
 }
 
@@ -152,6 +152,9 @@ TEST_P(EveryLayout, RefusesShapesByField) {
   TubeMesh tube = Tube(GetParam(), 0.05);
   tube.inner_radius = 0.5;
   EXPECT_THAT(BuildMesh(tube).status().message(), HasSubstr("inner_radius: 0.5"));
+  tube.inner_radius = 0.49;
+  tube.resolution.cell_size = 0.1;
+  EXPECT_THAT(BuildMesh(tube).status().message(), HasSubstr("a chord that cuts a quarter"));
   EXPECT_THAT(BuildMesh(Cylinder(GetParam(), 0.4)).status().message(),
               HasSubstr("resolution.cell_size: 0.4 m is too coarse: at most 0.3 m, the radius"));
 }
@@ -203,6 +206,14 @@ TEST(Unstructured, IsSoundForManySeedsAndSizes) {
     Sound(TubeMesh{{0, 0, 0}, 0.5, 0.25 + 0.015 * seed, 0.6, resolution});
     Sound(DiscMesh{{0, 0, 0}, 0.6, 0.04 + 0.01 * seed, resolution});
   }
+}
+
+// A node that smoothing brings to the very axis has no direction in which to be mirrored.
+TEST(Unstructured, TakesANodeOnTheAxis) {
+  Sound(DiscMesh{{0, 0, 0},
+                 0.20966795502205643,
+                 0.40270160744972183,
+                 {MeshLayout::kUnstructured, 0.20135080372486092, 0.2, 697}});
 }
 
 TEST(JitteredLattice, WithoutJitterIsTheKuhnLattice) {
