@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr char kProgram[] = CLEAVE_BINARY_DIR "/server/gateway/cleaved";
 // Far beyond what anything here takes: a test that comes to it has failed.
-constexpr auto kPatience = 120s;
+constexpr auto kPatience = 60s;
 
 void SetVector(google::protobuf::RepeatedField<double>* field, double x, double y, double z) {
   field->Clear();
@@ -102,7 +102,7 @@ v1::Scene BreakingBar(int64_t frame_count) {
   v1::Scene scene = PulledBox(0.4, 0.1, 0.05);
   scene.mutable_timing()->set_frames_per_second(100);
   scene.mutable_timing()->set_frame_count(frame_count);
-  scene.mutable_timing()->set_steps_per_frame(1);
+  scene.mutable_timing()->set_steps_per_frame(4);
   scene.mutable_output()->set_keyframe_interval(7);
   scene.mutable_output()->set_checkpoint_interval(5);
   return scene;

@@ -1,0 +1,161 @@
+// Programs die without warning, and nothing that was committed is lost or made twice.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <string>
+#include <vector>
+
+#include "client/cpp/client.h"
+#include "client/cpp/frame_stream.h"
+#include "tests/integration/test_server.h"
+
+namespace cleave {
+namespace {
+
+constexpr int64_t kFrames = 60;
+
+// What a run gives that nothing disturbs.
+const std::vector<std::string>& UndisturbedFrames() {
+  static const std::vector<std::string> frames = [] {
+    TestServer server;
+    const std::unique_ptr<Client> client = server.Connect();
+    Create(*client, "undisturbed", BreakingBar(kFrames));
+    return RunToEnd(*client, "undisturbed");
+  }();
+  return frames;
+}
+
+pid_t WorkerOf(const TestServer& server, const std::string& id) {
+  return std::stoi(ReadBytes(server.session_directory(id) + "/owner"));
+}
+
+// Takes frames from the stream up to the given one, and compares each.
+void Take(FrameStream& stream, int64_t last, std::vector<std::string>& frames) {
+  while (static_cast<int64_t>(frames.size()) <= last) {
+    absl::StatusOr<std::optional<StreamedFrame>> frame = stream.Next();
+    ASSERT_TRUE(frame.ok()) << frame.status();
+    ASSERT_TRUE(frame->has_value());
+    ASSERT_EQ((*frame)->header.frame, static_cast<int64_t>(frames.size()));
+    frames.push_back(std::move((*frame)->bytes));
+  }
+}
+
+TEST(CrashTest, TheRunThatIsComparedWithBreaksTheBar) {
+  ASSERT_EQ(UndisturbedFrames().size(), static_cast<size_t>(kFrames + 1));
+  const absl::StatusOr<FrameHeader> last = ParseFrameHeader(UndisturbedFrames().back());
+  ASSERT_TRUE(last.ok());
+  EXPECT_GT(last->broken_edges, 0u);
+  EXPECT_GT(last->fragments, 1);
+}
+
+TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndRepeatsNone) {
+  const std::vector<std::string>& expected = UndisturbedFrames();
+  TestServer server;
+  const std::unique_ptr<Client> client = server.Connect();
+  Create(*client, "bar", BreakingBar(kFrames));
+  ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
+  FrameStreamOptions options;
+  options.session = "sessions/bar";
+  FrameStream stream(*client, options);
+  std::vector<std::string> frames;
+  for (const int64_t frame : {12, 27}) {
+    Take(stream, frame, frames);
+    if (HasFatalFailure()) return;
+    ASSERT_EQ(kill(WorkerOf(server, "bar"), SIGKILL), 0);
+    ASSERT_LT(client->GetSession("sessions/bar")->head_frame(), kFrames);
+  }
+  Take(stream, kFrames, frames);
+  if (HasFatalFailure()) return;
+  EXPECT_FALSE((*stream.Next()).has_value());
+  EXPECT_EQ(frames, expected);
+  EXPECT_THAT(server.log(), testing::HasSubstr("worker_ended session=bar how=\"signal 9\""));
+}
+
+TEST(CrashTest, AGatewayKilledMidStreamGoesOnWhereItWasWhenItIsBack) {
+  const std::vector<std::string>& expected = UndisturbedFrames();
+  TestServer server;
+  const std::unique_ptr<Client> client = server.Connect();
+  const v1::Session created = Create(*client, "bar", BreakingBar(kFrames));
+  ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
+  FrameStreamOptions options;
+  options.session = "sessions/bar";
+  FrameStream stream(*client, options);
+  std::vector<std::string> frames;
+  Take(stream, 15, frames);
+  if (HasFatalFailure()) return;
+  server.Kill();
+  server.Start();
+  ASSERT_LT(server.Connect()->GetSession("sessions/bar")->head_frame(), kFrames);
+  // The same stream: the client goes on behind the last frame that it has.
+  Take(stream, kFrames, frames);
+  if (HasFatalFailure()) return;
+  EXPECT_FALSE((*stream.Next()).has_value());
+  EXPECT_EQ(frames, expected);
+  EXPECT_EQ(AllFrames(*client, "bar"), expected);
+  EXPECT_EQ(client->GetSession("sessions/bar")->uid(), created.uid());
+}
+
+TEST(CrashTest, AServerThatIsStoppedMidRunSavesAndGoesOnByItself) {
+  const std::vector<std::string>& expected = UndisturbedFrames();
+  TestServer server;
+  {
+    const std::unique_ptr<Client> client = server.Connect();
+    Create(*client, "bar", BreakingBar(kFrames));
+    ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
+    WaitFor(*client, "bar", [](const v1::Session& session) { return session.head_frame() >= 8; });
+  }
+  EXPECT_EQ(server.Stop(), 0) << server.log();
+  server.Start();
+  const std::unique_ptr<Client> client = server.Connect();
+  EXPECT_EQ(AllFrames(*client, "bar"), expected);
+}
+
+TEST(CrashTest, APausedSessionStaysPausedAcrossARestartOfTheServer) {
+  TestServer server;
+  int64_t head = 0;
+  {
+    const std::unique_ptr<Client> client = server.Connect();
+    Create(*client, "bar", BreakingBar(kFrames));
+    ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
+    WaitFor(*client, "bar", [](const v1::Session& session) { return session.head_frame() >= 5; });
+    const absl::StatusOr<v1::Session> paused = client->PauseSession("sessions/bar", false);
+    ASSERT_TRUE(paused.ok()) << paused.status();
+    EXPECT_EQ(paused->state(), v1::SESSION_STATE_IDLE);
+    head = paused->head_frame();
+  }
+  server.Kill();
+  server.Start();
+  const std::unique_ptr<Client> client = server.Connect();
+  const absl::StatusOr<v1::Session> session = client->GetSession("sessions/bar");
+  ASSERT_TRUE(session.ok()) << session.status();
+  EXPECT_EQ(session->state(), v1::SESSION_STATE_IDLE);
+  EXPECT_EQ(session->head_frame(), head);
+  EXPECT_EQ(RunToEnd(*client, "bar"), UndisturbedFrames());
+}
+
+TEST(CrashTest, ADamagedCheckpointAndATornJournalOnlyCostTime) {
+  const std::vector<std::string>& expected = UndisturbedFrames();
+  TestServer server;
+  {
+    const std::unique_ptr<Client> client = server.Connect();
+    Create(*client, "bar", BreakingBar(kFrames));
+    v1::RunGoal goal;
+    goal.set_until_frame(20);
+    ASSERT_TRUE(client->RunSession("sessions/bar", goal).ok());
+    WaitFor(*client, "bar", [](const v1::Session& session) {
+      return Rests(session) && session.head_frame() == 20;
+    });
+  }
+  ASSERT_EQ(server.Stop(), 0);
+  const std::string directory = server.session_directory("bar");
+  WriteBytes(directory + "/checkpoints/0000000020.checkpoint", "torn");
+  WriteBytes(directory + "/journal", ReadBytes(directory + "/journal") + "\x20\x01");
+  server.Start();
+  const std::unique_ptr<Client> client = server.Connect();
+  EXPECT_EQ(RunToEnd(*client, "bar"), expected);
+}
+
+}  // namespace
+}  // namespace cleave
