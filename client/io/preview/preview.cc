@@ -56,7 +56,7 @@ std::map<int32_t, RegionLook> LooksOf(const TetMesh& mesh) {
   for (const int32_t id : ids) {
     RegionLook& look = looks[id];
     look.slot = static_cast<int32_t>(looks.size()) - 1;
-    look.label = absl::StrCat("region ", id);
+    look.label = mesh.tet_regions.empty() ? "body" : absl::StrCat("region ", id);
     for (const MeshRegion& region : mesh.regions) {
       if (region.id == id && !region.name.empty()) look.label = region.name;
     }
@@ -180,7 +180,10 @@ class Studio {
       if (!named.insert(look.label).second) continue;
       legend_.swatches.emplace_back(look.label, RegionColor(look.slot));
     }
-    if (survey_.broken_edges.back() == 0) return;
+    if (survey_.broken_edges.back() == 0) {
+      if (legend_.swatches.size() == 1) legend_.swatches.clear();  // nothing to tell apart
+      return;
+    }
     const auto first = std::min_element(
         looks.begin(), looks.end(),
         [](const auto& a, const auto& b) { return a.second.slot < b.second.slot; });
