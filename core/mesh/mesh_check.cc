@@ -180,18 +180,21 @@ void WarnOf(const Tally& tally, absl::string_view array, absl::string_view what,
 
 }  // namespace
 
-Faults CheckAndOrientMesh(TetMesh& mesh) {
+Faults CheckMeshCounts(int64_t node_count, int64_t tet_count) {
   Faults faults;
-  if (mesh.tets.empty()) faults.Error("tets", "there are none; at least one is needed");
-  if (mesh.tet_count() > limits::kMaxTets) {
-    faults.Error("tets", absl::StrCat(mesh.tet_count(), " are more than ", limits::kMaxTets));
-  }
-  if (mesh.node_count() > limits::kMaxNodes) {
+  if (tet_count <= 0) faults.Error("tets", "there are none; at least one is needed");
+  if (tet_count > limits::kMaxTets)
+    faults.Error("tets", absl::StrCat(tet_count, " are more than ", limits::kMaxTets));
+  if (node_count > limits::kMaxNodes) {
     faults.Error("rest_positions",
-                 absl::StrCat(mesh.node_count(), " nodes are more than ", limits::kMaxNodes));
+                 absl::StrCat(node_count, " nodes are more than ", limits::kMaxNodes));
   }
-  if (!faults.ok()) return faults;
+  return faults;
+}
 
+Faults CheckAndOrientMesh(TetMesh& mesh) {
+  Faults faults = CheckMeshCounts(mesh.node_count(), mesh.tet_count());
+  if (!faults.ok()) return faults;
   CheckPositions(mesh, faults);
   Tally swapped;
   Tally slivers;

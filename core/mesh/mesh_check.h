@@ -1,6 +1,8 @@
 #ifndef CLEAVE_CORE_MESH_MESH_CHECK_H_
 #define CLEAVE_CORE_MESH_MESH_CHECK_H_
 
+#include <cstdint>
+
 #include "core/base/faults.h"
 #include "core/mesh/tet_mesh.h"
 
@@ -22,6 +24,9 @@ namespace cleave {
 //
 // When it returns with ok(), the mesh meets the preconditions of BuildIncidence and the solver.
 Faults CheckAndOrientMesh(TetMesh& mesh);
+
+// The part that needs no mesh: no tets (13), or more nodes or tets than can be held (17).
+Faults CheckMeshCounts(int64_t node_count, int64_t tet_count);
 
 }  // namespace cleave
 

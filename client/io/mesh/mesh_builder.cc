@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/mesh/mesh_limits.h"
+#include "core/base/status.h"
+#include "core/mesh/mesh_check.h"
 
 namespace cleave {
 
@@ -14,11 +15,7 @@ absl::StatusOr<TetMesh> MeshBuilder::Finish() {
         "the file holds no tetrahedra; only the inside of a body can break, so mesh its volume "
         "(Gmsh: `gmsh -3`, with the volume in a physical group if there are any)");
   }
-  if (tet_count() > limits::kMaxTets || node_count() > limits::kMaxNodes) {
-    return absl::InvalidArgumentError(absl::StrCat(tet_count(), " tets and ", node_count(),
-                                                   " nodes; at most ", limits::kMaxTets, " and ",
-                                                   limits::kMaxNodes, " can be held"));
-  }
+  CLEAVE_RETURN_IF_ERROR(CheckMeshCounts(node_count(), tet_count()).ToStatus());
 
   bool consecutive = true;
   for (size_t node = 1; node < numbers_.size() && consecutive; ++node)

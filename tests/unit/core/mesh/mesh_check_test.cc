@@ -121,10 +121,11 @@ TEST(MeshCheck, RefusesDuplicateTetsOnceEach) {
               UnorderedElementsAre(Is("tets[2]", "as tets[0]"), Is("tets[3]", "as tets[0]")));
 }
 
-TEST(MeshCheck, RefusesTooManyItems) {
-  TetMesh mesh = OneTet();
-  mesh.tets.resize(limits::kMaxTets + 1);
-  EXPECT_THAT(CheckAndOrientMesh(mesh).errors(), ElementsAre(Is("tets", "more than")));
+TEST(MeshCheck, RefusesMoreThanIdsCanCount) {
+  EXPECT_TRUE(CheckMeshCounts(limits::kMaxNodes, limits::kMaxTets).ok());
+  EXPECT_THAT(CheckMeshCounts(limits::kMaxNodes + 1, limits::kMaxTets + 1).errors(),
+              ElementsAre(Is("tets", "64000001 are more than 64000000"),
+                          Is("rest_positions", "64000001 nodes are more than 64000000")));
 }
 
 TEST(MeshCheck, RefusesRegionArraysThatDoNotFit) {
