@@ -115,6 +115,19 @@ TEST(Render, BytesDoNotDependOnTheThreads) {
   EXPECT_EQ(one, Draw(surface, RenderStyle{}).rgb);
 }
 
+TEST(Render, ABodyFarFromTheOriginLooksTheSame) {
+  ShownSurface surface = TwoSquares();
+  const Image near_origin = Draw(surface, RenderStyle{});
+  Camera camera = Overhead();
+  for (Vec3& point : surface.points) point[1] += 0x1p26;
+  camera.position[1] += 0x1p26;
+  camera.scene_center[1] += 0x1p26;
+  auto renderer = Renderer::Create();
+  const auto far_away = renderer->Render(surface, camera, RenderStyle{}, 80, 80);
+  ASSERT_TRUE(far_away.ok()) << far_away.status();
+  EXPECT_EQ(far_away->rgb, near_origin.rgb);
+}
+
 TEST(Render, BadInputIsRefusedByName) {
   auto renderer = Renderer::Create();
   ASSERT_TRUE(renderer.ok()) << renderer.status();

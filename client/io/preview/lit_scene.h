@@ -1,0 +1,83 @@
+#ifndef CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_
+#define CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "client/io/preview/camera.h"
+#include "client/io/preview/render.h"
+#include "client/io/series/shown_surface.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+struct RTCRayHit;
+
+namespace cleave {
+
+// What a camera ray meets.
+struct Hit {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();       // m, from the middle of the scene
+  Eigen::Vector3f shadow_origin = Eigen::Vector3f::Zero();  // m, where rays to the sun start
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();         // geometric, towards the camera
+  Eigen::Vector3f shading = Eigen::Vector3f::Zero();        // smoothed
+  Eigen::Vector3f albedo = Eigen::Vector3f::Zero();         // linear
+  Eigen::Vector3f glow = Eigen::Vector3f::Zero();           // seen whatever the light: backdrop
+  float distance = 0;                                       // m
+  float gloss = 0;
+  float lit = 1;  // how much of the light counts; 0: all backdrop
+};
+
+// A surface on a plain ground under a soft sun and a sky, ready for rays. Const methods are
+// thread-safe. Colours and light are linear; open level ground receives a light of 1.
+class LitScene {
+ public:
+  // `device` and the other arguments must outlive this object. Precondition: the surface passed
+  // CheckShownSurface, the style fits it.
+  LitScene(RTCDeviceTy* device, const ShownSurface& surface, const Camera& camera,
+           const RenderStyle& style);
+  ~LitScene();
+  LitScene(const LitScene&) = delete;
+  LitScene& operator=(const LitScene&) = delete;
+
+  // Whether there was memory for the surface.
+  bool ready() const { return ready_; }
+
+  // What the camera sees at a place of its picture, x and y in [-1, 1], to the right and up.
+  Hit Trace(float x, float y) const;
+
+  // Light that reaches `hit`, by rays of place `sample` in their sequence, and the shine that the
+  // sun leaves on it.
+  Eigen::Vector3f Irradiance(const Hit& hit, uint32_t sample, float& shine) const;
+
+ private:
+  // Single precision is enough about the middle of the scene, wherever that lies.
+  Eigen::Vector3f Local(const Vec3& point) const;
+  void BuildColors();
+  void BuildGeometry(RTCDeviceTy* device);
+  bool Blocked(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+  Eigen::Vector3f Sky(const Eigen::Vector3f& direction) const;
+  Hit SurfaceHit(const Eigen::Vector3f& direction, const RTCRayHit& ray) const;
+  Hit GroundHit(const Eigen::Vector3f& direction) const;
+
+  const ShownSurface& surface_;
+  const RenderStyle& style_;
+  RTCSceneTy* scene_ = nullptr;
+  bool ready_ = true;
+  const Vec3 origin_;  // m, where the middle of the scene is: all that follows counts from it
+  const Eigen::Vector3f eye_, right_, up_, forward_;  // right and up scaled by the view
+  const float radius_;                                // m
+  const Eigen::Vector3f ground_up_;
+  const float ground_height_;  // m
+  const float offset_;         // m, from a surface to the start of a ray that leaves it
+  Eigen::Vector3f sun_;        // towards it
+  float sun_strength_ = 0;
+  std::vector<std::array<Eigen::Vector3f, 3>> normals_;
+  std::vector<Eigen::Vector3f> colors_;        // a triangle each
+  std::vector<Eigen::Vector3f> point_colors_;  // a point each; strain only
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_

@@ -1,0 +1,62 @@
+#ifndef CLEAVE_CLIENT_IO_PREVIEW_STUDIO_H_
+#define CLEAVE_CLIENT_IO_PREVIEW_STUDIO_H_
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/io/preview/legend.h"
+#include "client/io/preview/motion_survey.h"
+#include "client/io/preview/preview.h"
+#include "client/io/series/surface_sequence.h"
+
+namespace cleave {
+
+// Everything that the pictures of one run share: camera, colours, legend. Not thread-safe.
+class Studio {
+ public:
+  // Looks through the run first (SurveyMotion). The arguments must outlive this object. Errors:
+  // InvalidArgument for bad options or frames, Unavailable without a renderer.
+  static absl::StatusOr<std::unique_ptr<Studio>> Create(const TetMesh& mesh,
+                                                        const FrameSource& frames,
+                                                        const PreviewOptions& options);
+
+  const MotionSurvey& survey() const { return survey_; }
+  const Legend& legend() const { return legend_; }
+  int width() const { return options_.width; }  // pixels of a picture
+  int height() const { return height_; }
+  double aspect() const { return static_cast<double>(options_.width) / height_; }
+  double LetterHeight() const;  // pixels, of capitals
+
+  // The picture of a frame, with time, pieces and broken edges at its foot. Frames are drawn in
+  // ascending order.
+  absl::StatusOr<Image> Draw(int64_t position);
+
+  // Title and legend on top of a picture.
+  void DrawHead(Image& image) const;
+
+ private:
+  Studio(Renderer renderer, const TetMesh& mesh, const FrameSource& frames,
+         const PreviewOptions& options);
+  absl::Status Prepare();
+  void AddSwatches(const std::map<int32_t, RegionLook>& looks);
+  absl::Status ChooseStrainLimit();
+
+  Renderer renderer_;
+  const TetMesh& mesh_;
+  const FrameSource& frames_;
+  const PreviewOptions& options_;
+  SurfaceSequence sequence_;
+  MotionSurvey survey_;
+  Camera camera_;
+  RenderStyle style_;
+  Legend legend_;
+  int height_ = 0;
+  double step_ = 0;  // s, between the frames looked at
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_PREVIEW_STUDIO_H_
