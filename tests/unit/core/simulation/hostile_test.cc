@@ -174,7 +174,8 @@ TEST(Hostile, ACubeCrushedToAFifthComesBack) {
 }
 
 TEST(Hostile, ALidThroughTheFloorTurnsTetsInsideOutAndNothingDiverges) {
-  for (const Vec3& position : Crush(1.5)->positions()) {
+  const auto simulation = Crush(1.5);
+  for (const Vec3& position : simulation->positions()) {
     for (const double coordinate : position) EXPECT_LT(std::abs(coordinate), 5);
   }
 }
