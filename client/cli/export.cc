@@ -4,9 +4,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
+#include "client/cli/products.h"
 #include "client/cli/program.h"
 #include "client/cli/run_results.h"
 #include "client/io/export/export_series.h"
+#include "client/io/series/write_aside.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -15,6 +17,7 @@ namespace {
 struct Options {
   std::string run;
   std::string mesh;
+  std::string reports;
   double unit_scale = 1;
   std::string format = "vtu";
   std::string to;
@@ -33,7 +36,19 @@ std::string TargetFolder(const Options& options) {
   return (beside / options.format).string();
 }
 
+absl::Status ExportPlot(const Options& options) {
+  const RunFolder folder(options.run);
+  const std::string target =
+      absl::StrCat(options.to.empty() ? options.run : options.to, "/plot.svg");
+  if (!options.to.empty()) CLEAVE_RETURN_IF_ERROR(MakeDirectories(options.to));
+  CLEAVE_RETURN_IF_ERROR(
+      MakePlot(folder, options.reports.empty() ? folder.reports() : options.reports, target));
+  PrintResult(target);
+  return absl::OkStatus();
+}
+
 absl::Status Export(Program& program, const Options& options) {
+  if (options.format == "plot") return ExportPlot(options);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
@@ -55,14 +70,16 @@ absl::Status Export(Program& program, const Options& options) {
 }  // namespace
 
 void AddExport(CLI::App& app, Program& program) {
-  CLI::App* verb = app.add_subcommand("export", "Write recorded frames as VTU or PLY files");
+  CLI::App* verb =
+      app.add_subcommand("export", "Write recorded frames as VTU or PLY files, or a plot");
   auto options = std::make_shared<Options>();
   verb->add_option("run", options->run, "Folder of a run, or a .clv file")
       ->required()
       ->type_name("RUN");
   verb->add_option("--format", options->format,
-                   "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply: surfaces")
-      ->check(CLI::IsMember({"vtu", "vtu-volume", "ply"}))
+                   "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply: surfaces; "
+                   "plot: force and broken edges over time as SVG")
+      ->check(CLI::IsMember({"vtu", "vtu-volume", "ply", "plot"}))
       ->capture_default_str();
   verb->add_option("--to", options->to, "Folder for the files; default: RUN/FORMAT")
       ->type_name("DIR");
@@ -74,6 +91,9 @@ void AddExport(CLI::App& app, Program& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("METRES");
+  verb->add_option("--reports", options->reports,
+                   "For plot: the report lines; default: reports.jsonl in RUN")
+      ->type_name("FILE");
   verb->add_option("--first", options->first, "First frame")->check(CLI::NonNegativeNumber);
   verb->add_option("--last", options->last, "Last frame")->check(CLI::NonNegativeNumber);
   verb->add_option("--stride", options->stride, "Every N-th frame")

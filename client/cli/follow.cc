@@ -44,9 +44,13 @@ Interrupt::Handler SignalHandler(Client& client, const FollowOptions& options, F
       return;
     }
     const bool abort_step = signal == SIGTERM || count == 2;
-    if (!options.quiet)
-      PrintNote(abort_step ? "\npausing at once; the frame in work is given up"
-                           : "\npausing after this frame; Ctrl-C again gives the frame up");
+    if (!options.quiet) {
+      const bool below_bar = ProgressDisplay::StyleForStderr() == ProgressDisplay::Style::kBar;
+      PrintNote(absl::StrCat(below_bar ? "\n" : "",
+                             abort_step
+                                 ? "pausing at once; the frame in work is given up"
+                                 : "pausing after this frame; Ctrl-C again gives the frame up"));
+    }
     const auto paused = client.PauseSession(options.session, abort_step);
     if (!paused.ok() && !absl::IsFailedPrecondition(paused.status())) {
       PrintError(paused.status());

@@ -50,6 +50,7 @@ int Main(int argc, char** argv) {
   AddPlan(app, program);
   AddInspect(app, program);
   AddExport(app, program);
+  AddPreview(app, program);
   AddInfo(app, program);
   if (NamesUnknownVerb(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {

@@ -27,6 +27,7 @@ void AddPlan(CLI::App& app, Program& program);
 void AddInspect(CLI::App& app, Program& program);
 void AddInfo(CLI::App& app, Program& program);
 void AddExport(CLI::App& app, Program& program);
+void AddPreview(CLI::App& app, Program& program);
 
 }  // namespace cleave
 

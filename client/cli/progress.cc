@@ -30,6 +30,7 @@ std::string Count(int64_t count, const char* one, const char* many) {
 
 std::string FormatSeconds(double seconds) {
   if (!(seconds >= 0)) return "?";
+  if (seconds < 0.0995) return absl::StrFormat("%.2g ms", seconds * 1000);
   if (seconds < 9.95) return absl::StrFormat("%.1f s", seconds);
   const int64_t whole = std::llround(std::min(seconds, 1e15));
   if (whole < 60) return absl::StrCat(whole, " s");

@@ -17,7 +17,7 @@ struct RunProgress {
   std::optional<double> seconds_left;  // wall clock
 };
 
-// "0.8 s", "42 s", "3 min 05 s", "2 h 10 min".
+// "12 ms", "0.8 s", "42 s", "3 min 05 s", "2 h 10 min".
 std::string FormatSeconds(double seconds);
 // "912 B", "1.3 MiB".
 std::string FormatBytes(double bytes);

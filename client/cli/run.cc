@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
@@ -8,6 +9,7 @@
 #include "client/cli/follow.h"
 #include "client/cli/goal.h"
 #include "client/cli/json_line.h"
+#include "client/cli/products.h"
 #include "client/cli/program.h"
 #include "client/cli/progress.h"
 #include "client/cli/run_folder.h"
@@ -23,6 +25,7 @@ namespace {
 struct Options {
   ServerOptions server;
   GoalOptions goal;
+  ProductOptions products;
   std::string scene;
   std::string out;
   int threads = 0;
@@ -161,7 +164,9 @@ class Run {
                                                session_.goal_frame(), "; to go on:\n  ",
                                                ResumeCommand()));
     CLEAVE_RETURN_IF_ERROR(StatusOfEnd(session_.name(), result.end));
-    if (!options_.json) PrintFiles();
+    CLEAVE_ASSIGN_OR_RETURN(const std::vector<std::string> products,
+                            MakeProducts(folder_, options_.products, program_.interrupt));
+    if (!options_.json) PrintFiles(products);
     if (!options_.quiet && !options_.json)
       PrintNote(absl::StrCat("frame ", result.last_frame, ", ", result.broken_edges,
                              " broken edges, ", result.pieces,
@@ -169,9 +174,10 @@ class Run {
     return absl::OkStatus();
   }
 
-  void PrintFiles() const {
+  void PrintFiles(const std::vector<std::string>& products) const {
     for (const std::string& path : {folder_.frames(), folder_.mesh(), folder_.reports()})
       if (std::filesystem::exists(path)) PrintResult(path);
+    for (const std::string& path : products) PrintResult(path);
   }
 
   std::string ResumeCommand() const {
@@ -204,6 +210,7 @@ void AddRun(CLI::App& app, Program& program) {
       ->type_name("DIR");
   AddServerOptions(*verb, options->server, false);
   AddGoalOptions(*verb, options->goal);
+  AddProductOptions(*verb, options->products);
   verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
@@ -217,6 +224,7 @@ void AddRun(CLI::App& app, Program& program) {
       "twice gives that frame up; the same command goes on.\n\n"
       "Examples:\n"
       "  cleave run bar.scene.json                          a private server, into out/bar\n"
+      "  cleave run bar.scene.json --vtu --preview --plot\n"
       "  cleave run bar.scene.json --out wedge7 --frames 12\n"
       "  cleave run bar.scene.json --server farm-3:7420     on a server that runs already\n");
   verb->callback([options, &program] {

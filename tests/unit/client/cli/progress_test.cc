@@ -6,7 +6,9 @@ namespace cleave {
 namespace {
 
 TEST(Progress, SecondsReadWellAtEveryScale) {
-  EXPECT_EQ(FormatSeconds(0.04), "0.0 s");
+  EXPECT_EQ(FormatSeconds(0.04), "40 ms");
+  EXPECT_EQ(FormatSeconds(0.00123), "1.2 ms");
+  EXPECT_EQ(FormatSeconds(0.0996), "0.1 s");
   EXPECT_EQ(FormatSeconds(9.94), "9.9 s");
   EXPECT_EQ(FormatSeconds(42.4), "42 s");
   EXPECT_EQ(FormatSeconds(59.7), "1 min 00 s");

@@ -1,0 +1,164 @@
+#include "client/io/preview/preview.h"
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/cli/console.h"
+#include "client/cli/program.h"
+#include "client/cli/run_results.h"
+#include "client/io/series/write_aside.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+struct Options {
+  std::string run;
+  std::string mesh;
+  std::string to;
+  double unit_scale = 1;
+  std::optional<int64_t> still;
+  bool sheet = false;
+  bool animation = false;
+  int64_t stride = 1;
+  PreviewOptions look;
+  SheetOptions sheet_look;
+  AnimationOptions animation_look;
+  std::optional<double> azimuth, elevation;
+};
+
+// Pictures of one recording, each written when it is drawn.
+class Pictures {
+ public:
+  Pictures(Program& program, const Options& options, const RecordedRun& run)
+      : program_(program), options_(options), run_(run), look_(options.look) {
+    look_.camera.azimuth = options.azimuth;
+    look_.camera.elevation = options.elevation;
+  }
+
+  absl::Status Draw() {
+    folder_ = options_.to;
+    if (folder_.empty()) {
+      std::error_code error;
+      folder_ = std::filesystem::is_directory(options_.run, error)
+                    ? options_.run
+                    : std::filesystem::path(options_.run).parent_path().string();
+      if (folder_.empty()) folder_ = ".";
+    }
+    CLEAVE_RETURN_IF_ERROR(MakeDirectories(folder_));
+    CLEAVE_ASSIGN_OR_RETURN(
+        frames_,
+        SelectFrames(run_.recording, 0, std::numeric_limits<int64_t>::max(), options_.stride));
+    const bool neither = !options_.still.has_value() && !options_.sheet && !options_.animation;
+    if (options_.still.has_value()) CLEAVE_RETURN_IF_ERROR(DrawStill(*options_.still));
+    if (options_.sheet || neither) CLEAVE_RETURN_IF_ERROR(DrawSheet());
+    if (options_.animation || neither) CLEAVE_RETURN_IF_ERROR(DrawAnimation());
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::Status DrawStill(int64_t frame) {
+    CLEAVE_ASSIGN_OR_RETURN(const FrameSource only, SelectFrames(run_.recording, frame, frame, 1));
+    CLEAVE_ASSIGN_OR_RETURN(const Image image, RenderStill(run_.mesh, only, 0, look_));
+    return Write(absl::StrFormat("still_%06d.png", frame), image);
+  }
+  absl::Status DrawSheet() {
+    PreviewOptions look = look_;
+    if (look.width == PreviewOptions().width) look.width = 480;  // of a tile
+    CLEAVE_ASSIGN_OR_RETURN(
+        const Image image,
+        RenderContactSheet(run_.mesh, frames_, options_.sheet_look, look,
+                           ShowingProgress("drawing the contact sheet", program_.interrupt)));
+    return Write("contact_sheet.png", image);
+  }
+  absl::Status DrawAnimation() {
+    CLEAVE_ASSIGN_OR_RETURN(
+        const std::string bytes,
+        RenderAnimation(run_.mesh, frames_, options_.animation_look, look_,
+                        ShowingProgress("drawing the animation", program_.interrupt)));
+    const std::string path = absl::StrCat(folder_, "/preview.webp");
+    CLEAVE_RETURN_IF_ERROR(WriteAside(path, bytes));
+    PrintResult(path);
+    return absl::OkStatus();
+  }
+  absl::Status Write(const std::string& name, const Image& image) {
+    const std::string path = absl::StrCat(folder_, "/", name);
+    CLEAVE_RETURN_IF_ERROR(WritePng(path, image));
+    PrintResult(path);
+    return absl::OkStatus();
+  }
+
+  Program& program_;
+  const Options& options_;
+  const RecordedRun& run_;
+  PreviewOptions look_;
+  FrameSource frames_;
+  std::string folder_;
+};
+
+absl::Status Preview(Program& program, const Options& options) {
+  CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
+                          OpenRecordedRun(options.run, options.mesh, options.unit_scale));
+  return Pictures(program, options, run).Draw();
+}
+
+}  // namespace
+
+void AddPreview(CLI::App& app, Program& program) {
+  CLI::App* verb = app.add_subcommand("preview", "Draw recorded frames: still, sheet, animation");
+  auto options = std::make_shared<Options>();
+  verb->add_option("run", options->run, "Folder of a run, or a .clv file")
+      ->required()
+      ->type_name("RUN");
+  verb->add_option("--still", options->still, "Draw this frame: still_000012.png")
+      ->type_name("FRAME");
+  verb->add_flag("--sheet", options->sheet, "Draw contact_sheet.png");
+  verb->add_flag("--animation", options->animation, "Draw preview.webp");
+  verb->add_option("--to", options->to, "Folder for the pictures; default: RUN")->type_name("DIR");
+  verb->add_option("--mesh", options->mesh,
+                   "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
+      ->type_name("MESH");
+  verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("METRES");
+  verb->add_option("--color", options->look.color_by, "What colours tell")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ColorBy>{
+          {"region", ColorBy::kRegion}, {"piece", ColorBy::kPiece}, {"strain", ColorBy::kStrain}}))
+      ->type_name("region|piece|strain");
+  verb->add_option("--width", options->look.width, "Pixels of a picture, or of a sheet's tile")
+      ->check(CLI::Range(16, kMaxImageSide))
+      ->type_name("PIXELS");
+  verb->add_option("--tiles", options->sheet_look.tiles, "Most pictures of a sheet")
+      ->check(CLI::Range(1, 400))
+      ->capture_default_str();
+  verb->add_option("--rate", options->animation_look.frames_per_second,
+                   "Frames a second of the animation")
+      ->check(CLI::Range(0.1, 120.0))
+      ->capture_default_str();
+  verb->add_option("--stride", options->stride, "Every N-th frame")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  verb->add_option("--azimuth", options->azimuth, "Turns the camera round the body")
+      ->type_name("DEGREES");
+  verb->add_option("--elevation", options->elevation, "Lifts the camera above the ground")
+      ->check(CLI::Range(-88.0, 88.0))
+      ->type_name("DEGREES");
+  verb->add_option("--title", options->look.title, "Written into the pictures");
+  verb->footer(
+      "Draws the sheet and the animation when nothing is chosen; prints the paths.\n"
+      "Needs no display and no GPU.\n\n"
+      "Examples:\n"
+      "  cleave preview out/bar\n"
+      "  cleave preview out/bar --still 30 --color strain --width 1920\n");
+  verb->callback([options, &program] {
+    program.action = [options](Program& shared) { return Preview(shared, *options); };
+  });
+}
+
+}  // namespace cleave

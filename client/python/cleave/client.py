@@ -1,0 +1,387 @@
+"""A small client of the Cleave service: meshes, sessions, frames as numpy arrays.
+
+    with Client("unix:/tmp/cleave.sock") as client:
+        session = client.create_session("bar", load_scene("bar.scene.json"))
+        session.run()
+        for frame in session.frames():
+            print(frame.number, frame.time, frame.positions.shape, len(frame.broken_edges))
+
+Needs grpcio, protobuf, numpy and zstandard, and the stubs that make_stubs.py generates.
+"""
+
+import dataclasses
+import hashlib
+import pathlib
+import time
+import uuid
+
+import grpc
+import numpy as np
+import zstandard
+from google.protobuf import json_format, text_format
+
+from cleave.checksums import crc32c
+from cleave.stream import FrameDecoder, split_frame
+
+try:
+    from cleave.v1 import (
+        asset_pb2,
+        asset_pb2_grpc,
+        frame_pb2,
+        frame_pb2_grpc,
+        scene_pb2,
+        server_pb2,
+        server_pb2_grpc,
+        session_pb2,
+        session_pb2_grpc,
+    )
+    from google.rpc import error_details_pb2, status_pb2
+except ImportError as error:
+    raise ImportError("the stubs are missing: run client/python/make_stubs.py once") from error
+
+_CHUNK_BYTES = 256 * 1024
+_CALL_SECONDS = 30
+_ATTEMPTS = 8
+
+
+class CleaveError(Exception):
+    """What the server answered. `faults` lists (field, description) where it named fields."""
+
+    def __init__(self, code, message, faults=()):
+        self.code = code
+        self.faults = list(faults)
+        lines = [f"{field}: {text}" for field, text in self.faults] or [message]
+        super().__init__("\n".join(lines))
+
+    @classmethod
+    def of(cls, error):
+        faults = []
+        for key, value in error.trailing_metadata() or ():
+            if key != "grpc-status-details-bin":
+                continue
+            rich = status_pb2.Status.FromString(value)
+            for detail in rich.details:
+                bad_request = error_details_pb2.BadRequest()
+                if detail.Unpack(bad_request):
+                    faults += [(v.field, v.description) for v in bad_request.field_violations]
+        return cls(error.code(), error.details(), faults)
+
+
+class SimulationFailed(Exception):
+    """The run cannot go on; the frames so far have been given."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """One frame. Arrays are copies that stay as they are."""
+
+    number: int
+    time: float  # s
+    fragments: int
+    positions: np.ndarray  # nodes x 3 float64, m
+    broken_edges: np.ndarray  # ascending int32
+
+
+@dataclasses.dataclass(frozen=True)
+class Mesh:
+    """A tetrahedral mesh; node and tet ids are rows."""
+
+    positions: np.ndarray  # nodes x 3 float64
+    tets: np.ndarray  # tets x 4 int32
+
+    def edges(self):
+        """Node pairs, sorted: row numbers are the edge ids of broken_edges."""
+        corners = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
+        pairs = np.concatenate([self.tets[:, pair] for pair in corners])
+        return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def load_scene(path):
+    """The Scene message of a .scene.json or .textproto file. Errors name what is wrong."""
+    path = pathlib.Path(path)
+    if path.suffix == ".json":
+        return json_format.Parse(path.read_text(), scene_pb2.Scene())
+    return text_format.Parse(path.read_text(), scene_pb2.Scene())
+
+
+class Client:
+    """A connection to a server: HOST:PORT or unix:PATH. Use it as a context manager."""
+
+    def __init__(self, address, connect_seconds=10):
+        self._channel = grpc.insecure_channel(
+            address,
+            options=[
+                ("grpc.keepalive_time_ms", 20_000),
+                ("grpc.keepalive_timeout_ms", 10_000),
+                ("grpc.enable_http_proxy", 0),
+            ],
+        )
+        self._assets = asset_pb2_grpc.AssetServiceStub(self._channel)
+        self._frames = frame_pb2_grpc.FrameServiceStub(self._channel)
+        self._servers = server_pb2_grpc.ServerServiceStub(self._channel)
+        self._sessions = session_pb2_grpc.SessionServiceStub(self._channel)
+        self.server = self._call(
+            self._servers.GetServerInfo,
+            server_pb2.GetServerInfoRequest(client_version="cleave python"),
+            seconds=connect_seconds,
+            wait=True,
+        )
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self._channel.close()
+
+    def upload_mesh(self, positions, tets, regions=None, region_names=None):
+        """Sends a mesh (nodes x 3, tets x 4, a region id a tet or None) and returns its asset name.
+
+        What the server has is not sent again.
+        """
+        message = scene_pb2.TetMesh(
+            positions=np.asarray(positions, np.float64).ravel(),
+            tets=np.asarray(tets, np.uint32).ravel(),
+        )
+        if regions is not None:
+            message.tet_regions.extend(int(region) for region in regions)
+        for region, name in sorted((region_names or {}).items()):
+            message.regions.add(id=region, name=name)
+        data = message.SerializeToString(deterministic=True)
+        digest = asset_pb2.Digest(sha256=hashlib.sha256(data).digest(), size_bytes=len(data))
+        for attempt in range(1, _ATTEMPTS + 1):
+            missing = self._call(
+                self._assets.FindMissingAssets,
+                asset_pb2.FindMissingAssetsRequest(digests=[digest]),
+            ).missing
+            if not missing:
+                break
+            try:
+                self._upload(data, digest)
+            except CleaveError as error:
+                if error.code != grpc.StatusCode.UNAVAILABLE or attempt == _ATTEMPTS:
+                    raise
+                time.sleep(_delay(attempt))
+        return digest.sha256.hex()
+
+    def create_session(self, session_id, scene, threads=0, validate_only=False):
+        """Creates a session of a Scene message; with validate_only returns its Plan instead."""
+        response = self._call(
+            self._sessions.CreateSession,
+            session_pb2.CreateSessionRequest(
+                session_id=session_id,
+                scene=scene,
+                threads=threads,
+                validate_only=validate_only,
+                request_id=uuid.uuid4().hex,
+            ),
+            seconds=300,
+        )
+        if validate_only:
+            return response.plan
+        return Session(self, response.session.name)
+
+    def session(self, name):
+        """A session that is there already, by id or name."""
+        name = name if name.startswith("sessions/") else f"sessions/{name}"
+        session = Session(self, name)
+        session.state()
+        return session
+
+    def sessions(self):
+        """All sessions, as messages."""
+        request = session_pb2.ListSessionsRequest()
+        found = []
+        while True:
+            page = self._call(self._sessions.ListSessions, request)
+            found += page.sessions
+            request.page_token = page.next_page_token
+            if not request.page_token:
+                return found
+
+    def download_mesh(self, asset, unit_scale=1.0):
+        """The Mesh of an asset name; positions times unit_scale."""
+        data = bytearray()
+        try:
+            for chunk in self._assets.DownloadAsset(
+                asset_pb2.DownloadAssetRequest(asset=asset), timeout=3600
+            ):
+                if chunk.offset != len(data) or chunk.crc32c != crc32c(chunk.payload):
+                    raise CleaveError(grpc.StatusCode.DATA_LOSS, "a chunk of the mesh is damaged")
+                data += chunk.payload
+        except grpc.RpcError as error:
+            raise CleaveError.of(error) from None
+        if hashlib.sha256(data).hexdigest() != asset:
+            raise CleaveError(grpc.StatusCode.DATA_LOSS, "the mesh received is not the one asked for")
+        message = scene_pb2.TetMesh.FromString(bytes(data))
+        return Mesh(
+            np.array(message.positions, np.float64).reshape(-1, 3) * unit_scale,
+            np.array(message.tets, np.int32).reshape(-1, 4),
+        )
+
+    def _upload(self, data, digest):
+        # Named after the content: a later process goes on where this one stopped.
+        upload_id = "mesh-" + digest.sha256.hex()[:40]
+        try:
+            begin = self._assets.QueryUploadStatus(
+                asset_pb2.QueryUploadStatusRequest(upload_id=upload_id), timeout=_CALL_SECONDS
+            ).committed_size
+        except grpc.RpcError as error:
+            if error.code() != grpc.StatusCode.NOT_FOUND:
+                raise CleaveError.of(error) from None
+            begin = 0
+        compressor = zstandard.ZstdCompressor(level=3)
+
+        def chunks():
+            for offset in range(begin, len(data), _CHUNK_BYTES):
+                raw = data[offset : offset + _CHUNK_BYTES]
+                request = asset_pb2.UploadAssetRequest(
+                    upload_id=upload_id,
+                    offset=offset,
+                    raw_size=len(raw),
+                    payload=compressor.compress(raw),
+                    crc32c=crc32c(raw),
+                    finish=offset + len(raw) == len(data),
+                )
+                if offset == begin:
+                    request.spec.kind = asset_pb2.ASSET_KIND_TET_MESH
+                    request.spec.digest.CopyFrom(digest)
+                    request.spec.compression = asset_pb2.COMPRESSION_ZSTD
+                yield request
+
+        try:
+            self._assets.UploadAsset(chunks(), timeout=3600)
+        except grpc.RpcError as error:
+            raise CleaveError.of(error) from None
+
+    def _call(self, method, request, seconds=_CALL_SECONDS, wait=False):
+        """A call that is safe to repeat, repeated while the server is away."""
+        for attempt in range(1, _ATTEMPTS + 1):
+            try:
+                return method(request, timeout=seconds, wait_for_ready=wait)
+            except grpc.RpcError as error:
+                if error.code() != grpc.StatusCode.UNAVAILABLE or attempt == _ATTEMPTS:
+                    raise CleaveError.of(error) from None
+                time.sleep(_delay(attempt))
+
+
+class Session:
+    """One simulation on the server."""
+
+    def __init__(self, client, name):
+        self._client = client
+        self.name = name
+
+    def state(self):
+        """The Session message: state, head_frame, goal_frame, progress, scene, error."""
+        return self._client._call(
+            self._client._sessions.GetSession, session_pb2.GetSessionRequest(name=self.name)
+        )
+
+    def run(self, until_frame=0, stop_on_fracture=False):
+        """Starts running towards a goal and returns at once; frames() follows."""
+        return self._client._call(
+            self._client._sessions.RunSession,
+            session_pb2.RunSessionRequest(
+                name=self.name,
+                goal=session_pb2.RunGoal(
+                    until_frame=until_frame, stop_on_fracture=stop_on_fracture
+                ),
+                request_id=uuid.uuid4().hex,
+            ),
+        )
+
+    def step(self, frames=1, seconds=600):
+        """Advances by some frames and returns the response message."""
+        head = max(0, self.state().head_frame)
+        return self._client._call(
+            self._client._sessions.StepSession,
+            session_pb2.StepSessionRequest(name=self.name, frames=frames, expected_head=head),
+            seconds=seconds,
+        )
+
+    def pause(self, abort_step=False):
+        """Stops the run after the frame in work, or at once."""
+        return self._client._call(
+            self._client._sessions.PauseSession,
+            session_pb2.PauseSessionRequest(name=self.name, abort_step=abort_step),
+        )
+
+    def delete(self):
+        """Removes the session and its frames; repeating it is no error."""
+        self._client._call(
+            self._client._sessions.DeleteSession,
+            session_pb2.DeleteSessionRequest(name=self.name, allow_missing=True),
+        )
+
+    def mesh(self):
+        """The Mesh (metres) that node and edge ids of frames refer to."""
+        mesh = self.state().scene.mesh
+        scale = mesh.unit_scale if mesh.HasField("unit_scale") else 1.0
+        return self._client.download_mesh(mesh.asset, scale)
+
+    def frames(self, first_frame=0, stop_frame=None, mesh=None):
+        """Yields every Frame once, in order, until the run reaches its goal or is paused.
+
+        Goes on after cuts of the connection. `mesh` spares fetching it. Raises SimulationFailed
+        after the last frame of a run that failed.
+        """
+        rest = (mesh or self.mesh()).positions
+        decoder = None
+        attempt = 0
+        while True:
+            request = frame_pb2.StreamFramesRequest(session=self.name, first_frame=first_frame)
+            if stop_frame is not None:
+                request.stop_frame = stop_frame
+            if decoder is not None and decoder.frame >= 0:
+                request.first_frame = decoder.frame + 1
+                request.resume.epoch = decoder.epoch
+                request.resume.frame = decoder.frame
+                request.resume.state_hash = decoder.state_hash
+            stream = self._client._frames.StreamFrames(request)
+            try:
+                data = b""
+                for message in stream:
+                    event = message.WhichOneof("event")
+                    if event == "start" and decoder is None:
+                        decoder = FrameDecoder(message.start.header, rest)
+                    elif event == "chunk":
+                        data += message.chunk.payload
+                        if len(data) < message.chunk.frame_bytes:
+                            continue
+                        header, _ = split_frame(data)
+                        # A server that cannot resume begins at a key frame before.
+                        known = header.epoch == decoder.epoch and header.frame <= decoder.frame
+                        if not known:
+                            decoder.apply(data)
+                        data = b""
+                        attempt = 0
+                        if not known and decoder.frame >= first_frame:
+                            yield Frame(
+                                decoder.frame,
+                                decoder.time,
+                                decoder.fragments,
+                                decoder.positions.copy(),
+                                decoder.broken_edges.copy(),
+                            )
+                    elif event == "end":
+                        if message.end.reason == frame_pb2.END_REASON_FAILED:
+                            raise SimulationFailed(f"{self.name}: {message.end.message}")
+                        if message.end.reason != frame_pb2.END_REASON_SHUTDOWN:
+                            return
+            except grpc.RpcError as error:
+                if error.code() != grpc.StatusCode.UNAVAILABLE:
+                    raise CleaveError.of(error) from None
+            finally:
+                stream.cancel()
+            attempt += 1
+            if attempt >= _ATTEMPTS:
+                raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
+            time.sleep(_delay(attempt))
+
+
+def _delay(attempt):
+    """Seconds before the next attempt."""
+    return min(5.0, 0.2 * 2 ** (attempt - 1))
