@@ -8,54 +8,18 @@
 #include <utility>
 
 #include "core/base/counter_rng.h"
-#include "core/mesh/faces.h"
 
 namespace cleave {
 namespace {
 
-constexpr size_t kMostRingNodes = 8;
-constexpr int32_t kOutside = -1;
-
-// Nodes of the face opposite to nodes[slot], turning outward.
-std::array<int32_t, 3> FaceOf(const std::array<int32_t, 4>& nodes, size_t slot) {
-  const auto& face = kTetFaces[slot];
-  return {nodes[static_cast<size_t>(face[0])], nodes[static_cast<size_t>(face[1])],
-          nodes[static_cast<size_t>(face[2])]};
-}
-
-std::array<int32_t, 3> Sorted(std::array<int32_t, 3> face) {
-  std::sort(face.begin(), face.end());
-  return face;
-}
-
-size_t SlotOf(const std::array<int32_t, 4>& nodes, int32_t node) {
-  return static_cast<size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
-}
+using Cell = TetComplex::Cell;
+constexpr int32_t kOutside = TetComplex::kOutside;
+constexpr size_t kMostRingNodes = TetComplex::kMostRingNodes;
 
 }  // namespace
 
 TetImprover::TetImprover(PlacedPoints points, const std::vector<std::array<int32_t, 4>>& tets)
-    : points_(std::move(points)), cell_of_node_(points_.positions.size(), kOutside) {
-  cells_.reserve(tets.size());
-  for (const auto& nodes : tets) {
-    for (const int32_t node : nodes)
-      cell_of_node_[static_cast<size_t>(node)] = static_cast<int32_t>(cells_.size());
-    cells_.push_back({nodes, {kOutside, kOutside, kOutside, kOutside}});
-  }
-  TetMesh mesh;
-  mesh.rest_positions = points_.positions;
-  mesh.tets = tets;
-  ForEachFace(
-      mesh, [](int64_t) { return true; },
-      [&](std::span<const FaceUse> uses) {
-        if (uses.size() != 2) return;
-        for (size_t i = 0; i < 2; ++i) {
-          cells_[static_cast<size_t>(uses[i].tet)].neighbours[static_cast<size_t>(uses[i].local)] =
-              uses[1 - i].tet;
-        }
-      });
-  seen_.assign(cells_.size(), 0);
-}
+    : points_(std::move(points)), complex_(points_.positions.size(), tets) {}
 
 // The smallest sine of a dihedral angle, with the sign of the volume: sin = 3 V l / (2 A B) for an
 // edge of length l between faces of areas A and B.
@@ -87,154 +51,6 @@ double TetImprover::Distance(int32_t a, int32_t b) const {
   return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
 }
 
-void TetImprover::CollectStar(int32_t node) {
-  star_.clear();
-  const int32_t first = cell_of_node_[static_cast<size_t>(node)];
-  if (first == kOutside) return;
-  ++visit_;
-  star_.push_back(first);
-  seen_[static_cast<size_t>(first)] = visit_;
-  for (size_t next = 0; next < star_.size(); ++next) {
-    const Cell& cell = CellAt(star_[next]);
-    for (size_t slot = 0; slot < 4; ++slot) {
-      const int32_t other = cell.neighbours[slot];
-      if (cell.nodes[slot] == node || other == kOutside) continue;
-      if (std::exchange(seen_[static_cast<size_t>(other)], visit_) != visit_)
-        star_.push_back(other);
-    }
-  }
-}
-
-// Fills ring_ with the tets round the edge (a, b) of `cell`; false when there are too many.
-bool TetImprover::CollectRing(int32_t cell, int32_t a, int32_t b) {
-  // In the given tet, find the order of the other two that makes positive volume.
-  const std::array<int32_t, 4>& nodes = CellAt(cell).nodes;
-  std::array<int32_t, 2> others;
-  size_t count = 0;
-  for (const int32_t node : nodes) {
-    if (node != a && node != b) others[count++] = node;
-  }
-  // (a, b, c, d) is positive when it is an even permutation of the tet's own order.
-  const std::array<size_t, 4> order = {SlotOf(nodes, a), SlotOf(nodes, b), SlotOf(nodes, others[0]),
-                                       SlotOf(nodes, others[1])};
-  bool even = true;
-  for (size_t i = 0; i < 4; ++i)
-    for (size_t j = i + 1; j < 4; ++j) even = even == (order[i] < order[j]);
-  if (!even) std::swap(others[0], others[1]);
-  ring_.a = a;
-  ring_.b = b;
-  ring_.closed = false;
-  ring_.nodes.assign({others[0], others[1]});
-  ring_.cells.assign(1, cell);
-  // Onward across the face that keeps the last ring node.
-  int32_t at = cell;
-  int32_t leave = others[0];
-  while (true) {
-    const int32_t across = CellAt(at).neighbours[SlotOf(CellAt(at).nodes, leave)];
-    if (across == kOutside) break;
-    if (across == cell) {
-      ring_.closed = true;
-      ring_.nodes.pop_back();  // it was the first again
-      return ring_.nodes.size() <= kMostRingNodes;
-    }
-    if (ring_.cells.size() >= kMostRingNodes) return false;
-    const int32_t kept = ring_.nodes.back();
-    int32_t met = kOutside;
-    for (const int32_t node : CellAt(across).nodes) {
-      if (node != a && node != b && node != kept) met = node;
-    }
-    ring_.cells.push_back(across);
-    ring_.nodes.push_back(met);
-    leave = kept;
-    at = across;
-  }
-  // The edge is on the surface: the rest lies the other way.
-  at = cell;
-  leave = others[1];
-  while (true) {
-    const int32_t across = CellAt(at).neighbours[SlotOf(CellAt(at).nodes, leave)];
-    if (across == kOutside) return true;
-    if (ring_.cells.size() >= kMostRingNodes) return false;
-    const int32_t kept = ring_.nodes.front();
-    int32_t met = kOutside;
-    for (const int32_t node : CellAt(across).nodes) {
-      if (node != a && node != b && node != kept) met = node;
-    }
-    ring_.cells.insert(ring_.cells.begin(), across);
-    ring_.nodes.insert(ring_.nodes.begin(), met);
-    leave = kept;
-    at = across;
-  }
-}
-
-bool TetImprover::OnSurface(int32_t node) {
-  CollectStar(node);
-  for (const int32_t id : star_) {
-    for (size_t slot = 0; slot < 4; ++slot) {
-      if (CellAt(id).nodes[slot] != node && CellAt(id).neighbours[slot] == kOutside) return true;
-    }
-  }
-  return false;
-}
-
-bool TetImprover::HasEdge(int32_t a, int32_t b) {
-  CollectStar(a);
-  return std::any_of(star_.begin(), star_.end(),
-                     [&](int32_t id) { return SlotOf(CellAt(id).nodes, b) < 4; });
-}
-
-void TetImprover::Replace(const std::vector<int32_t>& old_cells,
-                          const std::vector<std::array<int32_t, 4>>& new_cells) {
-  struct Face {
-    std::array<int32_t, 3> key;
-    int32_t cell;
-    size_t slot;
-  };
-  std::vector<Face> open;  // faces that wait for their other side
-  for (const int32_t old : old_cells) {
-    for (size_t slot = 0; slot < 4; ++slot) {
-      const int32_t other = CellAt(old).neighbours[slot];
-      if (other == kOutside ||
-          std::find(old_cells.begin(), old_cells.end(), other) != old_cells.end())
-        continue;
-      const Cell& cell = CellAt(other);
-      size_t back = 0;
-      while (cell.neighbours[back] != old) ++back;
-      open.push_back({Sorted(FaceOf(cell.nodes, back)), other, back});
-    }
-  }
-  for (const int32_t old : old_cells) {
-    cells_[static_cast<size_t>(old)].alive = false;
-    free_.push_back(old);
-  }
-  for (const Face& face : open)
-    cells_[static_cast<size_t>(face.cell)].neighbours[face.slot] = kOutside;
-  for (const auto& nodes : new_cells) {
-    if (free_.empty()) {
-      free_.push_back(static_cast<int32_t>(cells_.size()));
-      cells_.emplace_back();
-      seen_.push_back(0);
-    }
-    const int32_t id = free_.back();
-    free_.pop_back();
-    Cell& cell = cells_[static_cast<size_t>(id)];
-    cell = {nodes, {kOutside, kOutside, kOutside, kOutside}};
-    for (size_t slot = 0; slot < 4; ++slot) {
-      cell_of_node_[static_cast<size_t>(nodes[slot])] = id;
-      const std::array<int32_t, 3> key = Sorted(FaceOf(nodes, slot));
-      const auto match =
-          std::find_if(open.begin(), open.end(), [&](const Face& face) { return face.key == key; });
-      if (match == open.end()) {
-        open.push_back({key, id, slot});
-        continue;
-      }
-      cell.neighbours[slot] = match->cell;
-      cells_[static_cast<size_t>(match->cell)].neighbours[match->slot] = id;
-      open.erase(match);
-    }
-  }
-}
-
 // Two tets at a face become three round the edge between their apexes.
 bool TetImprover::TurnFace(int32_t cell, size_t slot) {
   const int32_t other = CellAt(cell).neighbours[slot];
@@ -251,14 +67,15 @@ bool TetImprover::TurnFace(int32_t cell, size_t slot) {
     fresh.push_back({below, above, face[i], face[(i + 1) % 3]});
     if (QualityOf(fresh.back()) <= before) return false;
   }
-  Replace({cell, other}, fresh);
+  complex_.Replace({cell, other}, fresh);
   return true;
 }
 
 // The tets round an edge become two for each triangle of the best filling of their ring. On the
 // surface the ring is open, and closing it turns the edge between two surface triangles.
 bool TetImprover::RemoveEdge(int32_t cell, size_t slot_a, size_t slot_b) {
-  if (!CollectRing(cell, CellAt(cell).nodes[slot_a], CellAt(cell).nodes[slot_b])) return false;
+  if (!complex_.CollectRing(cell, CellAt(cell).nodes[slot_a], CellAt(cell).nodes[slot_b], ring_))
+    return false;
   const size_t count = ring_.nodes.size();
   if (count < 3) return false;
   if (!ring_.closed) {
@@ -275,7 +92,7 @@ bool TetImprover::RemoveEdge(int32_t cell, size_t slot_a, size_t slot_b) {
     const bool round =
         a.radius > 0 && a.radius == b.radius && a.radius == u.radius && a.radius == v.radius;
     if (!flat && !(round && Distance(u_node, v_node) < Distance(ring_.a, ring_.b))) return false;
-    if (HasEdge(u_node, v_node)) return false;
+    if (complex_.HasEdge(u_node, v_node)) return false;
   }
   double before = std::numeric_limits<double>::infinity();
   for (const int32_t id : ring_.cells) before = std::min(before, QualityOf(id));
@@ -316,8 +133,7 @@ bool TetImprover::RemoveEdge(int32_t cell, size_t slot_a, size_t slot_b) {
     parts.push_back({i, k});
     parts.push_back({k, j});
   }
-  const std::vector<int32_t> old_cells = ring_.cells;
-  Replace(old_cells, fresh);
+  complex_.Replace(ring_.cells, fresh);
   return true;
 }
 
@@ -327,10 +143,10 @@ bool TetImprover::MoveNode(int32_t node) {
   const auto index = static_cast<size_t>(node);
   const Binding& binding = points_.bindings[index];
   if (binding.fixed_axes == 7) return false;
-  CollectStar(node);
+  const std::vector<int32_t>& star = complex_.StarOf(node);
   const auto worst = [&] {
     double quality = std::numeric_limits<double>::infinity();
-    for (const int32_t id : star_) quality = std::min(quality, QualityOf(id));
+    for (const int32_t id : star) quality = std::min(quality, QualityOf(id));
     return quality;
   };
   Vec3& position = points_.positions[index];
@@ -350,14 +166,14 @@ bool TetImprover::MoveNode(int32_t node) {
 
   Vec3 middle{0, 0, 0};
   double size = 0;
-  for (const int32_t id : star_) {
+  for (const int32_t id : star) {
     for (const int32_t other : CellAt(id).nodes) {
       const Vec3& p = points_.positions[static_cast<size_t>(other)];
       for (size_t axis = 0; axis < 3; ++axis) middle[axis] += p[axis];
       size += std::hypot(p[0] - position[0], p[1] - position[1], p[2] - position[2]);
     }
   }
-  const auto corners = static_cast<double>(4 * star_.size());
+  const auto corners = static_cast<double>(4 * star.size());
   for (double& coordinate : middle) coordinate /= corners;
   size /= corners;
   consider(middle);
@@ -376,26 +192,6 @@ bool TetImprover::MoveNode(int32_t node) {
   return quality > before;
 }
 
-void TetImprover::RemoveCell(int32_t id) {
-  Cell& cell = cells_[static_cast<size_t>(id)];
-  cell.alive = false;
-  for (const int32_t other : cell.neighbours) {
-    if (other == kOutside) continue;
-    for (int32_t& back : cells_[static_cast<size_t>(other)].neighbours) {
-      if (back == id) back = kOutside;
-    }
-  }
-  for (size_t k = 0; k < 4; ++k) {
-    int32_t& home = cell_of_node_[static_cast<size_t>(cell.nodes[k])];
-    if (home != id) continue;
-    home = kOutside;
-    for (size_t slot = 0; slot < 4; ++slot) {
-      if (slot != k && cell.neighbours[slot] != kOutside) home = cell.neighbours[slot];
-    }
-  }
-  free_.push_back(id);
-}
-
 void TetImprover::PeelRoundSide(double radius, double depth) {
   constexpr int kMostRounds = 20;
   const auto bridges = [&](const Cell& cell) {
@@ -411,7 +207,7 @@ void TetImprover::PeelRoundSide(double radius, double depth) {
   };
   for (int round = 0; round < kMostRounds; ++round) {
     bool any = false;
-    for (int32_t id = 0; id < static_cast<int32_t>(cells_.size()); ++id) {
+    for (int32_t id = 0; id < complex_.cell_count(); ++id) {
       const Cell& cell = CellAt(id);
       if (!cell.alive || !bridges(cell)) continue;
       std::vector<size_t> bare;
@@ -422,12 +218,13 @@ void TetImprover::PeelRoundSide(double radius, double depth) {
       // Other tets hold the surface together.
       bool peel = false;
       if (bare.size() == 1) {
-        peel = !OnSurface(cell.nodes[bare[0]]);
+        peel = !complex_.OnSurface(cell.nodes[bare[0]]);
       } else if (bare.size() == 2) {
-        peel = !CollectRing(id, cell.nodes[bare[0]], cell.nodes[bare[1]]) || ring_.closed;
+        peel = !complex_.CollectRing(id, cell.nodes[bare[0]], cell.nodes[bare[1]], ring_) ||
+               ring_.closed;
       }
       if (!peel) continue;
-      RemoveCell(id);
+      complex_.Remove(id);
       any = true;
     }
     if (!any) return;
@@ -439,7 +236,7 @@ double TetImprover::Improve(double wanted, int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     std::vector<std::pair<double, int32_t>> bad;
     smallest = std::numeric_limits<double>::infinity();
-    for (int32_t id = 0; id < static_cast<int32_t>(cells_.size()); ++id) {
+    for (int32_t id = 0; id < complex_.cell_count(); ++id) {
       if (!CellAt(id).alive) continue;
       const double quality = QualityOf(id);
       smallest = std::min(smallest, quality);
@@ -470,7 +267,8 @@ double TetImprover::Improve(double wanted, int passes) {
 TetMesh TetImprover::Take() {
   TetMesh mesh;
   std::vector<int32_t> ids(points_.positions.size(), kOutside);
-  for (const Cell& cell : cells_) {
+  for (int32_t cell_id = 0; cell_id < complex_.cell_count(); ++cell_id) {
+    const Cell& cell = CellAt(cell_id);
     if (!cell.alive) continue;
     std::array<int32_t, 4> nodes = cell.nodes;
     for (int32_t& node : nodes) {
