@@ -11,6 +11,7 @@
 #include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/procedural.h"
+#include "core/model/footprint.h"
 #include "core/scene/scene.h"
 #include "core/scene/validate.h"
 #include "google/rpc/error_details.pb.h"
@@ -29,10 +30,9 @@ bool MeshIsSound(const Faults& faults) {
 }
 
 absl::Status MissingAsset(const std::string& sha256) {
-  absl::Status status =
-      MakeError(absl::StatusCode::kFailedPrecondition, "ASSET_MISSING",
-                absl::StrCat("the server has no asset ", sha256, "; upload it first"),
-                {{"asset", sha256}});
+  absl::Status status = MakeError(
+      absl::StatusCode::kFailedPrecondition, "ASSET_MISSING",
+      absl::StrCat("the server has no asset ", sha256, "; upload it first"), {{"asset", sha256}});
   google::rpc::PreconditionFailure failure;
   google::rpc::PreconditionFailure::Violation& violation = *failure.add_violations();
   violation.set_type("ASSET_MISSING");
@@ -72,11 +72,21 @@ absl::StatusOr<std::optional<TetMesh>> ObtainMesh(const MeshSource& mesh, const 
       mesh.source);
 }
 
-v1::Plan PlanModel(const TetMesh& mesh) {
+v1::Plan PlanOf(const Scene& scene, const TetMesh& mesh) {
   v1::Plan plan;
   plan.set_node_count(mesh.node_count());
   plan.set_tet_count(mesh.tet_count());
   plan.set_edge_count(BuildIncidence(mesh).edge_count());
+  const Footprint footprint =
+      PlanModel(scene, plan.node_count(), plan.tet_count(), plan.edge_count());
+  for (const Part& part : footprint.parts) {
+    v1::PlanPart& listed = *plan.add_parts();
+    listed.set_name(part.name);
+    listed.set_bytes(part.bytes);
+  }
+  plan.set_total_bytes(footprint.total_bytes);
+  plan.set_seconds_per_frame(footprint.seconds_per_frame);
+  plan.set_total_seconds(footprint.total_seconds);
   return plan;
 }
 
@@ -89,13 +99,14 @@ absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults
   faults.Append("", ValidateScene(scene));
   std::optional<TetMesh> mesh;
   if (MeshIsSound(faults)) {
-    CLEAVE_ASSIGN_OR_RETURN(mesh, ObtainMesh(scene.mesh, assets,
-!(faults.ok() && request_faults.ok()), faults));
+    CLEAVE_ASSIGN_OR_RETURN(
+        mesh, ObtainMesh(scene.mesh, assets, !(faults.ok() && request_faults.ok()), faults));
   }
   AcceptedScene accepted;
   accepted.scene = message;
   if (mesh.has_value()) {
-    if (store_mesh && faults.ok() && request_faults.ok() && !std::holds_alternative<MeshAsset>(scene.mesh.source)) {
+    if (store_mesh && faults.ok() && request_faults.ok() &&
+        !std::holds_alternative<MeshAsset>(scene.mesh.source)) {
       CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(*mesh));
       CLEAVE_ASSIGN_OR_RETURN(*accepted.scene.mutable_mesh()->mutable_asset(), assets.Add(bytes));
     }
@@ -110,7 +121,7 @@ absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults
   for (const Fault& warning : faults.warnings()) {
     accepted.warnings.push_back(absl::StrCat(warning.field, ": ", warning.description));
   }
-  accepted.plan = PlanModel(*mesh);
+  accepted.plan = PlanOf(scene, *mesh);
   return accepted;
 }
 

@@ -56,6 +56,7 @@ TEST(MainRoadTest, AMeshFileBecomesAStreamOfItsBreakAndAFilmOfIt) {
   const absl::StatusOr<v1::CreateSessionResponse> planned = client->CreateSession(request);
   ASSERT_TRUE(planned.ok()) << planned.status();
   EXPECT_EQ(planned->plan().tet_count(), mesh->tet_count());
+  EXPECT_GT(planned->plan().total_bytes(), 0);
   EXPECT_TRUE(client->ListSessions()->empty());
 
   // Assemble: the worker builds the model and commits the rest state.
