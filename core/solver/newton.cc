@@ -19,6 +19,8 @@ constexpr double kLinearMargin = 0.1;
 constexpr int kMaxBacktracks = 40;
 // Energies are sums of about as many roundings as there are tets, mostly of random sign.
 constexpr double kEnergyRounding = 1e-14;
+// Elastic terms of an edge carry a few roundings each.
+constexpr double kTermRounding = 1e-15;
 
 }  // namespace
 
@@ -113,6 +115,10 @@ absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displa
     for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
     matrix_.Finish(inertia_);
     pcg_.Prepare(matrix_);
+    const Double4 gross = blocks_.Sum(
+        [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
+    rounding_energy_ = kTermRounding * gross[0];
+    rounding_force_ = kTermRounding * std::sqrt(gross[1]);
   }
   ScopedTimer timer(report.linear_solve_seconds);
   const Quality& quality = model_.quality;
@@ -145,14 +151,15 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     initial_elastic_energy_ = elastic_energy_;
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  rounding_force_ = 0;
   double last_step = kInfinity;
   double last_norm = kInfinity;
   double last_share = 0;
   bool exact_works = true;
   for (int32_t iteration = 0;; ++iteration) {
     const double relative = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
-    const bool converged =
-        residual_norm_ == 0 || (relative <= quality.residual_tolerance && last_step <= step_limit);
+    const bool converged = residual_norm_ <= rounding_force_ ||
+                           (relative <= quality.residual_tolerance && last_step <= step_limit);
     if (converged) {
       report.residual = std::max(report.residual, relative);
       return absl::OkStatus();
@@ -178,7 +185,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     ScopedTimer timer(report.assembly_seconds);
     const double energy = energy_;
     const double norm = residual_norm_;
-    const double rounding = kEnergyRounding * energy_magnitude_;
+    const double rounding = kEnergyRounding * energy_magnitude_ + rounding_energy_;
     double share = 1;
     bool accepted = false;
     bool at_rounding = false;

@@ -77,8 +77,10 @@ class NewtonSolver {
   double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
   double elastic_energy_ = 0;    // J
   double initial_elastic_energy_ = 0;
-  double residual_norm_ = 0;  // N
-  double force_scale_ = 0;    // N, what the residual is held against
+  double residual_norm_ = 0;    // N
+  double rounding_energy_ = 0;  // J, what rounding may hide of the elastic energy
+  double rounding_force_ = 0;   // N, and of the forces
+  double force_scale_ = 0;      // N, what the residual is held against
 };
 
 }  // namespace cleave

@@ -1,5 +1,6 @@
 #include "core/solver/stiffness_matrix.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "core/base/parallel.h"
@@ -84,6 +85,30 @@ void StiffnessMatrix::Multiply(const NodalVector& x, int64_t begin, int64_t end,
                                lower_node_.data() + lower_begin_[node + 1], x[node], x.data());
     product[node] = kCoordinates ? sum : Splat(0);
   }
+}
+
+Double4 StiffnessMatrix::GrossTerms(const NodalVector& x, int64_t begin, int64_t end) const {
+  double energy = 0, squared_forces = 0;
+  for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+    double force = 0;
+    const double size = std::sqrt(Dot(x[node], x[node]));
+    const auto add = [&](const float* block, int32_t other) {
+      double squares = 0;
+      for (int k = 0; k < 9; ++k) squares += double{block[k]} * block[k];
+      const Double4 y = x[static_cast<size_t>(other)];
+      const Double4 d = x[node] - y;
+      const double length = std::sqrt(Dot(d, d));
+      const double stiffness = std::sqrt(squares);
+      force += stiffness * (size + std::sqrt(Dot(y, y)));
+      energy += stiffness * length * length;
+    };
+    for (int64_t edge = upper_begin_[node]; edge < upper_begin_[node + 1]; ++edge)
+      add(upper_.data() + 9 * edge, upper_node_[static_cast<size_t>(edge)]);
+    for (int64_t slot = lower_begin_[node]; slot < lower_begin_[node + 1]; ++slot)
+      add(lower_.data() + 9 * slot, lower_node_[static_cast<size_t>(slot)]);
+    squared_forces += force * force;
+  }
+  return Double4{energy, squared_forces, 0, 0};
 }
 
 void StiffnessMatrix::DiagonalBlock(int64_t node, Double4 columns[3]) const {

@@ -28,6 +28,10 @@ class StiffnessMatrix {
 
   // (A x) of nodes [begin, end).
   void Multiply(const NodalVector& x, int64_t begin, int64_t end, NodalVector& product) const;
+  // What rounding takes a share of at displacements x, for nodes [begin, end): the sum over edges
+  // of |B| |x_i - x_j|^2 (J), the squared sum of |B| (|x_i| + |x_j|) (N^2), 0, 0. A piece that has
+  // only moved and turned has no net force, but its terms do not cancel to the last digit.
+  Double4 GrossTerms(const NodalVector& x, int64_t begin, int64_t end) const;
   // The diagonal block of a node, by columns. Symmetric to float rounding.
   void DiagonalBlock(int64_t node, Double4 columns[3]) const;
 

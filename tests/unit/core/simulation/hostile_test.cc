@@ -180,6 +180,17 @@ TEST(Hostile, ALidThroughTheFloorTurnsTetsInsideOutAndNothingDiverges) {
   }
 }
 
+// Its forces are rounding and nothing else, which no tolerance relative to them can reach.
+TEST(Hostile, ABodyDraggedFarAndTurnedThereComesToRestInRounding) {
+  const TetMesh mesh = KuhnBox({3, 2, 2}, {1.5, 1, 1});
+  Scene scene = TightScene(1e9, 0.3, 1000, 0.01);
+  scene.quality = Quality{};
+  AddBoxSet(scene, "end", {-1, -1, -1}, {1e-9, 2, 2});
+  Motion& drag = AddMotion(scene, "end");
+  drag.keyframes = {{0, {0, 0, 0}, 0}, {1, {50, 20, -30}, 2}};
+  MustRun(scene, mesh, 200);
+}
+
 TEST(Hostile, DensityAndStiffnessAMillionTimesApart) {
   TetMesh mesh = KuhnBox({4, 2, 2}, {2, 1, 1});
   mesh.tet_regions.resize(static_cast<size_t>(mesh.tet_count()));
