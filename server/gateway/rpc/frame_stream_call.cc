@@ -129,7 +129,8 @@ absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
     start.set_resumed(true);
     next_frame_ = held->frame + 1;
   } else {
-    const int64_t wanted = request_.has_resume() ? resume.frame() + 1 : request_.first_frame();
+    // A client that holds something else than this log begins again near where it was.
+    const int64_t wanted = request_.has_resume() ? resume.frame() : request_.first_frame();
     const std::optional<IndexRow> key =
         frames.Keyframe(std::clamp<int64_t>(wanted, 0, frames.head()));
     if (!key.has_value()) return absl::DataLossError("the frame log has no key frame");
