@@ -36,12 +36,12 @@ struct Options {
 class Pictures {
  public:
   Pictures(Program& program, const Options& options, const RecordedRun& run)
-      : program_(program), options_(options), run_(run), look_(options.look) {
-    look_.camera.azimuth = options.azimuth;
-    look_.camera.elevation = options.elevation;
-  }
+      : program_(program), options_(options), run_(run), look_(options.look) {}
 
   absl::Status Draw() {
+    CLEAVE_RETURN_IF_ERROR(ApplyRunLook(options_.run, run_.mesh, look_));
+    look_.camera.azimuth = options_.azimuth;
+    look_.camera.elevation = options_.elevation;
     folder_ = options_.to;
     if (folder_.empty()) {
       std::error_code error;

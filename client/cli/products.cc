@@ -70,6 +70,7 @@ absl::StatusOr<std::vector<std::string>> MakeProducts(const RunFolder& folder,
   }
   if (options.preview) {
     PreviewOptions look;
+    CLEAVE_RETURN_IF_ERROR(ApplyRunLook(folder.path(), run.mesh, look));
     look.width = 480;
     CLEAVE_ASSIGN_OR_RETURN(
         const Image sheet,

@@ -36,11 +36,15 @@ absl::Status RunFolder::CheckSameScene(const v1::Scene& wanted) const {
                    "to throw that run away"));
 }
 
-absl::Status RunFolder::Begin(const std::string& name, const v1::Scene& sent) const {
+absl::Status RunFolder::WriteScene(const v1::Scene& sent) const {
   std::string text;
   if (!google::protobuf::TextFormat::PrintToString(sent, &text))
     return absl::InternalError("the scene could not be written as text");
-  CLEAVE_RETURN_IF_ERROR(WriteAside(scene(), text));
+  return WriteAside(scene(), text);
+}
+
+absl::Status RunFolder::Begin(const std::string& name, const v1::Scene& sent) const {
+  CLEAVE_RETURN_IF_ERROR(WriteScene(sent));
   return WriteAside(session(), absl::StrCat(name, "\n"));
 }
 

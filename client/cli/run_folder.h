@@ -32,6 +32,7 @@ class RunFolder {
   absl::Status CheckSameScene(const v1::Scene& scene) const;
   // Notes the session before it is created, so that a crash leaves nothing unnamed.
   absl::Status Begin(const std::string& session, const v1::Scene& scene) const;
+  absl::Status WriteScene(const v1::Scene& scene) const;
   absl::Status WriteMesh(const TetMesh& mesh) const;
   // Removes what this class names; files of others stay.
   absl::Status Clear() const;

@@ -9,11 +9,38 @@
 #include "client/cli/console.h"
 #include "client/cli/run_folder.h"
 #include "client/cli/scene_input.h"
+#include "client/io/preview/scene_look.h"
+#include "client/io/scene/scene_file.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
 #include "core/mesh/mesh_check.h"
+#include "proto/convert/scene.h"
 
 namespace cleave {
+
+namespace {
+
+RunFolder FolderOf(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) return RunFolder(path);
+  return RunFolder((std::filesystem::path(path).parent_path() / ".").lexically_normal().string());
+}
+
+}  // namespace
+
+absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look) {
+  const std::string scene_path = FolderOf(path).scene();
+  std::error_code error;
+  if (!std::filesystem::exists(scene_path, error)) return absl::OkStatus();
+  CLEAVE_ASSIGN_OR_RETURN(const SceneFile file, ReadSceneFile(scene_path));
+  Faults faults;
+  const Scene scene = SceneFromMessage(file.scene, faults);
+  if (!faults.ok()) return absl::InvalidArgumentError(file.Describe(faults.errors()));
+  const std::string title = look.title;
+  ApplySceneLook(scene, mesh, look);
+  if (!title.empty()) look.title = title;
+  return absl::OkStatus();
+}
 
 absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::string& mesh_path,
                                             double unit_scale) {
@@ -21,12 +48,7 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   const bool folder = std::filesystem::is_directory(path, error);
   const std::string frames = folder ? RunFolder(path).frames() : path;
   std::string mesh_file = mesh_path;
-  if (mesh_file.empty())
-    mesh_file =
-        RunFolder(
-            folder ? path
-                   : (std::filesystem::path(path).parent_path() / ".").lexically_normal().string())
-            .mesh();
+  if (mesh_file.empty()) mesh_file = FolderOf(path).mesh();
   if (mesh_path.empty() && !std::filesystem::exists(mesh_file, error))
     return absl::NotFoundError(absl::StrCat(mesh_file, ": is not there; name the mesh of ", frames,
                                             " with --mesh (a scene file will do)"));

@@ -6,6 +6,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/cli/interrupt.h"
+#include "client/io/preview/preview.h"
 #include "client/io/record/recording.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/tet_mesh.h"
@@ -22,6 +23,10 @@ struct RecordedRun {
 // mesh beside it (mesh.pb) unless `mesh_path` names one (ReadAnyMesh).
 absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::string& mesh_path,
                                             double unit_scale);
+
+// Gives pictures the scene's title, material names and up where the run's folder (or the .clv's)
+// holds its scene; else leaves them as they are.
+absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look);
 
 // Only every `stride`-th frame from `first` to `last` (frame numbers), at most all.
 absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,

@@ -28,7 +28,7 @@ struct Options {
 };
 
 absl::Status Record(Client& client, Interrupt& interrupt, const Options& options,
-                    FollowOptions follow) {
+                    FollowOptions follow, const v1::Scene& scene) {
   const RunFolder folder(options.out);
   std::unique_ptr<Recorder> recorder;
   if (!options.out.empty()) {
@@ -44,6 +44,7 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
       CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh,
                               SessionMesh(client, follow.session, result->mesh_asset));
       CLEAVE_RETURN_IF_ERROR(folder.WriteMesh(mesh));
+      CLEAVE_RETURN_IF_ERROR(folder.WriteScene(scene));
     }
     if (!options.json) {
       PrintResult(folder.frames());
@@ -61,6 +62,7 @@ absl::Status Watch(Program& program, const Options& options) {
                           ConnectServer(options.server, program.interrupt));
   CLEAVE_ASSIGN_OR_RETURN(v1::Session session, client->GetSession(SessionName(options.session)));
   const int64_t head = session.head_frame();
+  const v1::Scene scene = session.scene();
   if (options.run) {
     CLEAVE_ASSIGN_OR_RETURN(session, client->RunSession(session.name(), GoalMessage(options.goal)));
   }
@@ -72,7 +74,7 @@ absl::Status Watch(Program& program, const Options& options) {
   follow.head_frame = head;
   follow.json = options.json;
   follow.quiet = options.quiet;
-  return Record(*client, program.interrupt, options, follow);
+  return Record(*client, program.interrupt, options, follow, scene);
 }
 
 }  // namespace
@@ -85,7 +87,8 @@ void AddWatch(CLI::App& app, Program& program) {
       ->required()
       ->type_name("SESSION");
   AddServerOptions(*verb, options->server, true);
-  verb->add_option("--out", options->out, "Folder for the recording: frames.clv and mesh.pb")
+  verb->add_option("--out", options->out,
+                   "Folder for the recording: frames.clv, mesh.pb and scene.textproto")
       ->type_name("DIR");
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
       ->check(CLI::Range(int64_t{0}, int64_t{1} << 40))

@@ -1,0 +1,236 @@
+"""The command line against the real programs: what it leaves behind, says and exits with.
+
+Usage: cli_test.py CLEAVE CLEAVED SCENE [unittest arguments]
+"""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CLEAVE, CLEAVED, SCENE = sys.argv[1:4]
+SECONDS = 300  # for anything that must end
+
+# A small block pulled at one side: a few tens of milliseconds a frame.
+BLOCK = """{
+  "name": "block",
+  "mesh": {"box": {"size": [0.4, 0.1, 0.1],
+    "resolution": {"layout": "MESH_LAYOUT_JITTERED_LATTICE", "cell_size": 0.05}}},
+  "materials": [{"youngs_modulus": 1e5, "poisson_ratio": 0.3, "density": 1000}],
+  "node_sets": [{"name": "left", "select": [{"plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}}]}],
+  "motions": [{"node_set": "left"}],
+  "gravity": [0, 0, -9.81],
+  "timing": {"frame_count": %d}
+}
+"""
+
+
+def environment():
+    return {k: v for k, v in os.environ.items() if k != "CLEAVE_SERVER"}
+
+
+def cleave(*arguments):
+    """Runs to the end; (exit code, stdout, stderr)."""
+    done = subprocess.run([CLEAVE, *map(str, arguments)], capture_output=True, text=True,
+                          timeout=SECONDS, env=environment())
+    return done.returncode, done.stdout, done.stderr
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self._folder.name)
+        self.addCleanup(self._folder.cleanup)
+
+    def scene(self, text, name="block.scene.json"):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+
+class Scenes(CliTest):
+    def test_bad_scene_exits_3_with_every_fault_at_its_line(self):
+        text = (BLOCK % 3).replace('"youngs_modulus"', '"youngs_moduls"')
+        code, output, errors = cleave("run", self.scene(text), "--out", self.folder / "out")
+        self.assertEqual(code, 3)
+        self.assertEqual(output, "")
+        self.assertIn('block.scene.json:5: material field "youngs_moduls" is unknown; '
+                      'did you mean "youngs_modulus"?', errors)
+        text = (BLOCK % 3).replace("0.3", "0.7").replace("1000", "-1")
+        code, _, errors = cleave("validate", self.scene(text))
+        self.assertEqual(code, 3)
+        self.assertEqual(len([line for line in errors.splitlines()
+                              if "block.scene.json:5: materials[0]." in line]), 2, errors)
+
+    def test_valid_scene_exits_0(self):
+        code, _, errors = cleave("validate", SCENE)
+        self.assertEqual((code, errors.splitlines()[-1]), (0, f"{SCENE} is valid"))
+
+    def test_missing_files_exit_6(self):
+        self.assertEqual(cleave("validate", self.folder / "none.scene.json")[0], 6)
+        text = re.sub(r'"mesh": \{"box".*?\}\}\}', '"mesh": {"file": "none.msh"}', BLOCK % 3,
+                      flags=re.DOTALL)
+        code, _, errors = cleave("inspect", self.scene(text))
+        self.assertEqual(code, 6)
+        self.assertIn("none.msh", errors)
+
+    def test_inspect_counts_a_mesh(self):
+        code, output, _ = cleave("inspect", SCENE, "--json")
+        self.assertEqual(code, 0)
+        report = json.loads(output)
+        self.assertGreater(report["tets"], 1000)
+        self.assertEqual(report["components"], 1)
+        self.assertIn("gauge", [region["name"] for region in report["regions"]])
+
+
+class Usage(CliTest):
+    def test_wrong_command_lines_exit_2(self):
+        for arguments in ([], ["frobnicate"], ["run"], ["list"], ["run", "a", "--frames", "-1"],
+                          ["run", "a", "--no-such-flag"]):
+            self.assertEqual(cleave(*arguments)[0], 2, arguments)
+        self.assertIn('did you mean "inspect"?', cleave("inspct")[2])
+
+    def test_every_verb_explains_itself_with_an_example(self):
+        code, output, _ = cleave("--help")
+        self.assertEqual(code, 0)
+        for verb in ("run", "submit", "watch", "step", "list", "cancel", "validate", "plan",
+                     "inspect", "export", "preview", "info"):
+            self.assertIn(f"\n  {verb} ", output)
+            code, help_text, _ = cleave(verb, "--help")
+            self.assertEqual(code, 0)
+            self.assertIn(f"  cleave {verb} ", help_text)
+
+    def test_nobody_at_the_address_exits_4(self):
+        code, _, errors = cleave("list", "--server", f"unix:{self.folder}/none",
+                                 "--connect-timeout", "0.3")
+        self.assertEqual(code, 4)
+        self.assertIn("no server answers", errors)
+
+
+class EmbeddedRuns(CliTest):
+    def test_run_leaves_a_recording_that_exports(self):
+        out = self.folder / "out"
+        code, output, errors = cleave("run", self.scene(BLOCK % 4), "--out", out, "--plot")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(output.split(), [f"{out}/{name}" for name in
+                                          ("frames.clv", "mesh.pb", "reports.jsonl", "plot.svg")])
+        self.assertIn("frame 4 of 4", errors)
+        self.assertEqual(len((out / "reports.jsonl").read_text().splitlines()), 4)
+        code, output, errors = cleave("export", out)
+        self.assertEqual((code, output), (0, f"{out}/vtu/cleave.pvd\n"), errors)
+        self.assertEqual(len(list((out / "vtu").glob("*.vtu"))), 5)
+        code, output, errors = cleave("preview", out, "--still", "4", "--width", "64")
+        self.assertEqual((code, output), (0, f"{out}/still_000004.png\n"), errors)
+        self.assertEqual(cleave("preview", out, "--still", "9")[0], 3)
+
+    def test_other_scene_in_the_same_folder_is_refused_unless_fresh(self):
+        out = self.folder / "out"
+        self.assertEqual(cleave("run", self.scene(BLOCK % 2), "--out", out, "-q")[0], 0)
+        other = self.scene((BLOCK % 2).replace("1e5", "2e5"))
+        code, _, errors = cleave("run", other, "--out", out)
+        self.assertEqual(code, 7)
+        self.assertIn("another --out", errors)
+        self.assertEqual(cleave("run", other, "--out", out, "--fresh", "-q")[0], 0)
+
+    def interrupted_run(self, out, number, scene):
+        """Sends a signal when the second frame has come; (exit code, last frame, stderr)."""
+        process = subprocess.Popen([CLEAVE, "run", scene, "--out", out, "--json"],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   env=environment(), start_new_session=True)
+        self.addCleanup(process.kill)
+        frames = []
+        for line in process.stdout:
+            event = json.loads(line)
+            if event["event"] != "frame":
+                continue
+            frames.append(event["frame"])
+            if len(frames) == 2:
+                process.send_signal(number)
+        errors = process.stderr.read()
+        process.stdout.close()
+        process.stderr.close()
+        return process.wait(timeout=SECONDS), frames, errors
+
+    def test_interrupted_run_is_paused_and_goes_on_with_the_bytes_of_an_unbroken_one(self):
+        frame_count = 150
+        scene = self.scene(BLOCK % frame_count)
+        whole, parts = self.folder / "whole", self.folder / "parts"
+        self.assertEqual(cleave("run", scene, "--out", whole, "-q")[0], 0)
+        code, first, errors = self.interrupted_run(parts, signal.SIGINT, scene)
+        self.assertEqual(code, 130, errors)
+        self.assertLess(first[-1], frame_count)
+        self.assertIn(f"cleave run {scene} --out {parts}", errors)
+        code, second, errors = self.interrupted_run(parts, signal.SIGTERM, scene)
+        self.assertEqual(code, 143, errors)
+        self.assertEqual(second[0], first[-1] + 1)
+        code, _, errors = cleave("run", scene, "--out", parts, "-q")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual((parts / "frames.clv").read_bytes(), (whole / "frames.clv").read_bytes())
+
+    def test_killed_run_takes_its_server_along_and_goes_on(self):
+        scene, out = self.scene(BLOCK % 150), self.folder / "out"
+        code, frames, _ = self.interrupted_run(out, signal.SIGKILL, scene)
+        self.assertEqual(code, -signal.SIGKILL)
+        code, _, errors = cleave("run", scene, "--out", out, "-q", "--frames", frames[-1] + 20)
+        self.assertEqual(code, 0, errors)
+
+
+class Server(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.address = f"unix:{self.folder}/socket"
+        log = open(self.folder / "log", "w")
+        self.addCleanup(log.close)
+        self.server = subprocess.Popen(
+            [CLEAVED, "--listen", self.address, "--data", self.folder / "data"],
+            stdout=log, stderr=log)
+        self.addCleanup(self.server.wait)
+        self.addCleanup(self.server.terminate)
+
+    def ask(self, verb, *arguments):
+        return cleave(verb, *arguments, "--server", self.address)
+
+    def test_session_is_submitted_stepped_watched_and_deleted(self):
+        scene = self.scene(BLOCK % 6)
+        code, output, errors = self.ask("submit", scene, "--idle", "--session", "block")
+        self.assertEqual((code, output), (0, "sessions/block\n"), errors)
+        code, output, errors = self.ask("step", "block", "-n", "2", "--json")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(json.loads(output)["head_frame"], "2")
+        out = self.folder / "out"
+        code, output, errors = self.ask("watch", "block", "--run", "--out", out, "--json")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual([json.loads(line)["frame"] for line in output.splitlines()],
+                         list(range(7)))
+        self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        code, output, _ = self.ask("list", "--json")
+        self.assertEqual([json.loads(line)["name"] for line in output.splitlines()],
+                         ["sessions/block"])
+        self.assertEqual(self.ask("cancel", "block", "--delete")[0], 0)
+        self.assertEqual(self.ask("watch", "block")[0], 6)
+        code, output, _ = self.ask("info", "--json")
+        self.assertEqual(json.loads(output)["api_versions"], ["cleave.v1"])
+
+    def test_name_taken_by_another_scene_exits_7_and_bad_name_3(self):
+        scene = self.scene(BLOCK % 2)
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)  # again
+        code, _, errors = self.ask("submit", self.scene(BLOCK % 3), "--idle", "--session", "block")
+        self.assertEqual(code, 7, errors)
+        self.assertEqual(self.ask("submit", scene, "--session", "Not A Name")[0], 3)
+
+    def test_plan_names_parts_and_costs_without_a_session(self):
+        code, output, errors = self.ask("plan", self.scene(BLOCK % 2), "--json")
+        self.assertEqual(code, 0, errors)
+        plan = json.loads(output)
+        self.assertGreater(int(plan["tet_count"]), 100)
+        self.assertEqual(self.ask("list", "--json")[1], "")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

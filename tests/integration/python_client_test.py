@@ -1,0 +1,103 @@
+"""The Python client against the real server.
+
+Usage: python_client_test.py CLEAVED STUBS_FOLDER [unittest arguments]; client/python is on the path.
+"""
+
+import contextlib
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CLEAVED, STUBS = sys.argv[1:3]
+
+import make_stubs  # noqa: E402
+
+make_stubs.make_stubs(pathlib.Path(STUBS))
+sys.path.insert(1, STUBS)
+
+import first_steps  # noqa: E402
+import grpc  # noqa: E402
+import numpy as np  # noqa: E402
+
+from cleave.client import CleaveError, Client  # noqa: E402
+from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
+
+
+class PythonClientTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls._folder.cleanup)
+        cls.address = f"unix:{cls._folder.name}/socket"
+        with open(f"{cls._folder.name}/log", "w") as log:
+            cls.server = subprocess.Popen(
+                [CLEAVED, "--listen", cls.address, "--data", f"{cls._folder.name}/data"],
+                stdout=log, stderr=log)
+        cls.addClassCleanup(cls.server.wait)
+        cls.addClassCleanup(cls.server.terminate)
+
+    def setUp(self):
+        self.client = Client(self.address)
+        self.addCleanup(self.client.close)
+
+    def test_first_steps_break_a_bar(self):
+        with contextlib.redirect_stdout(io.StringIO()) as output:
+            first_steps.main(self.address)
+        frames = [line for line in output.getvalue().splitlines() if line.startswith("frame")]
+        self.assertEqual(len(frames), 25)
+        self.assertNotIn(" 0 broken edges", frames[-1])
+        self.assertEqual(len(self.client.sessions()), 0)
+
+    def test_uploaded_mesh_is_simulated_and_comes_back(self):
+        positions = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)
+        tets = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])
+        asset = self.client.upload_mesh(positions, tets, regions=[1, 2], region_names={1: "low"})
+        self.assertEqual(self.client.upload_mesh(positions, tets, [1, 2], {1: "low"}), asset)
+        scene = scene_pb2.Scene(
+            mesh=scene_pb2.MeshSource(asset=asset, unit_scale=0.5),
+            materials=[scene_pb2.Material(youngs_modulus=1e6, poisson_ratio=0.3, density=1000)],
+            gravity=[0, 0, -10],
+            timing=scene_pb2.Timing(frame_count=5),
+        )
+        session = self.client.create_session("two-tets", scene)
+        self.addCleanup(session.delete)
+        mesh = session.mesh()
+        np.testing.assert_array_equal(mesh.positions, 0.5 * positions)
+        self.assertEqual(len(mesh.edges()), 9)
+        session.run()
+        frames = list(session.frames())
+        self.assertEqual([frame.number for frame in frames], list(range(6)))
+        np.testing.assert_array_less(frames[-1].positions[:, 2], mesh.positions[:, 2])
+        # Attached to later, and from the middle.
+        again = self.client.session("two-tets")
+        self.assertEqual([frame.number for frame in again.frames(3, 4)], [3, 4])
+        np.testing.assert_array_equal(list(again.frames(5))[0].positions, frames[-1].positions)
+
+    def test_session_is_stepped(self):
+        session = self.client.create_session("stepped", first_steps.bar())
+        self.addCleanup(session.delete)
+        self.assertEqual(session.step(2).frames_done, 2)
+        self.assertEqual(session.state().head_frame, 2)
+        self.assertEqual(session.state().state, session_pb2.SESSION_STATE_IDLE)
+
+    def test_every_fault_of_a_scene_is_named_by_field(self):
+        scene = first_steps.bar()
+        scene.materials[0].poisson_ratio = 0.7
+        scene.materials[0].density = -1
+        with self.assertRaises(CleaveError) as caught:
+            self.client.create_session("bad", scene)
+        self.assertEqual(caught.exception.code, grpc.StatusCode.INVALID_ARGUMENT)
+        self.assertEqual({field for field, _ in caught.exception.faults},
+                         {"scene.materials[0].poisson_ratio", "scene.materials[0].density"})
+
+    def test_unknown_session_is_not_found(self):
+        with self.assertRaises(CleaveError) as caught:
+            self.client.session("nobody")
+        self.assertEqual(caught.exception.code, grpc.StatusCode.NOT_FOUND)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
