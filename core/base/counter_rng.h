@@ -10,6 +10,7 @@ enum class RandomStream : uint64_t {
   kNodeNoise = 1,
   kEdgeDraw = 2,
   kMeshJitter = 3,
+  kEdgeDeal = 4,
 };
 
 // A uniform number in (0, 1), a pure function of its key: the same for any call order and thread.

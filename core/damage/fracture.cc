@@ -55,6 +55,10 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
   BreakPending({}, {});
 }
 
+void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
+  for (const int32_t edge : edges) min_threshold_ = std::min(min_threshold_, thresholds_[edge]);
+}
+
 PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effective_stress) {
   PassResult result;
   if (min_threshold_ == std::numeric_limits<double>::infinity()) return result;

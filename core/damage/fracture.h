@@ -64,7 +64,8 @@ class EdgeFracture {
  public:
   // `mesh`, `incidence` and what `thresholds` points to must outlive this object. Rest volumes are
   // positive. Thresholds are in Pa, a record an edge or one for all; infinite never breaks, 0 is
-  // cut here and now; never negative, NaN, or changed later. simultaneity is in (0, 1].
+  // cut here and now; never negative or NaN. They change later only as LowerThresholds says.
+  // simultaneity is in (0, 1].
   EdgeFracture(const TetMesh& mesh, const Incidence& incidence, Broadcast<double> thresholds,
                const FractureSettings& settings);
 
@@ -75,6 +76,10 @@ class EdgeFracture {
   // the damage factor) a tet each; stresses of dead tets are not read. NaN breaks nothing.
   PassResult BreakPass(std::span<const Vec3> positions,
                        std::span<const Eigen::Matrix3d> effective_stress);
+
+  // To be called when the thresholds of these edges have fallen, or any have risen again with a
+  // Restore: they count from the next pass on.
+  void LowerThresholds(std::span<const int32_t> edges);
 
   // The aggregated stress of every edge, Pa; 0 for broken edges. `stresses` has an edge each.
   void EdgeStresses(std::span<const Vec3> positions,
@@ -115,7 +120,7 @@ class EdgeFracture {
   const Incidence& incidence_;
   const Broadcast<double> thresholds_;
   const FractureSettings settings_;
-  double min_threshold_ = 0;          // Pa
+  double min_threshold_ = 0;          // Pa, at most the smallest threshold
   std::vector<double> rest_volumes_;  // m^3, a tet each
   std::vector<uint8_t> broken_;       // an edge each
   std::vector<EdgeMask> masks_;       // a tet each

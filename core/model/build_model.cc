@@ -15,6 +15,7 @@
 #include "core/model/elastic_term.h"
 #include "core/model/fibre_directions.h"
 #include "core/model/fibre_term.h"
+#include "core/model/impurities.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
@@ -230,6 +231,10 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     part.settings.simultaneity = scene.fracture.simultaneity;
     part.max_passes = scene.fracture.max_passes;
     part.client_edge = ClientEdges(*model.incidence, model.order);
+
+    // Impurities, which change its thresholds.
+    if (scene.impurities && scene.impurities->model != ImpurityModel::kOff)
+      part.impurities = BuildImpurities(scene, mesh, model.order, *model.incidence);
   }
 
   return model;

@@ -87,6 +87,15 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
             nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses
   }
 
+  if (breaks && scene.impurities && scene.impurities->model != ImpurityModel::kOff) {
+    const Impurities& impurities = *scene.impurities;
+    add("impurities",
+        nodes * kDouble + edges * kDouble +  // potencies, thresholds
+            (impurities.model == ImpurityModel::kGraph ? nodes * kInt : 0) +         // degrees
+            (impurities.mode == ImpurityMode::kSampled ? edges * kDouble : 0) +      // draws
+            (impurities.model == ImpurityModel::kUncorrelated ? edges * kInt : 0));  // deal
+  }
+
   // A linear solve carries a push through the mesh: its iterations grow with the nodes across.
   const double across = std::cbrt(static_cast<double>(nodes));
   const double linear_iterations =

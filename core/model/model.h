@@ -7,6 +7,7 @@
 
 #include "core/base/vec3.h"
 #include "core/damage/fracture.h"
+#include "core/damage/random_graph.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/reorder.h"
 #include "core/mesh/tet_mesh.h"
@@ -17,12 +18,21 @@
 
 namespace cleave {
 
+// What impurities add to a body that can break.
+struct ImpurityPart {
+  RandomGraphSettings settings;
+  std::vector<double> potencies;   // a node each
+  std::vector<double> edge_draws;  // an edge each, where strengths are drawn
+  std::vector<int32_t> edge_deal;  // an edge each, where strengths are dealt out: whose it has
+};
+
 // What a body that can break has besides.
 struct FracturePart {
   std::vector<double> edge_thresholds;  // Pa, an edge each, or one for all
   FractureSettings settings;
   int32_t max_passes = 60;           // of breaking and solving again, in a step
   std::vector<int32_t> client_edge;  // the client's id of every edge
+  std::optional<ImpurityPart> impurities;
 };
 
 // What a scene becomes: just the parts that it asks for. Ids in it are the solver's, nodes and tets

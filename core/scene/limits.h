@@ -21,7 +21,11 @@ inline constexpr int64_t kMaxFibreFamilies = 4;
 inline constexpr double kHardFibreRatio = 1e6;      // of Young's modulus; a warning from here on
 inline constexpr double kMaxStrengthRatio = 3;      // beyond it damage smears and follows no fibre
 inline constexpr int64_t kMaxCurvePoints = 10'000;  // every tet looks at every segment
-inline constexpr double kMaxDensity = 1e6;          // kg/m^3; osmium has 22 590
+inline constexpr double kMaxPotency = 100;          // strength stops changing well below it
+inline constexpr double kMaxPotencyNoise = 10;
+inline constexpr double kMaxSteepness = 100;  // k: strengths span a factor of 2 k
+inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly differ from here on
+inline constexpr double kMaxDensity = 1e6;    // kg/m^3; osmium has 22 590
 
 inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps
 inline constexpr double kCoarseStepSeconds = 0.1;  // a warning from here on

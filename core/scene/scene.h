@@ -141,6 +141,51 @@ struct InitialVelocity {
   Vec3 center{0, 0, 0};            // m
 };
 
+// What impurities do to strength.
+enum class ImpurityEffect {
+  kDegradation,  // down to a tenth
+  kUpgradation,  // up to ten times
+};
+
+// How edges take strength from the potencies of their nodes.
+enum class ImpurityModel {
+  kGraph,         // bonds that a node loses weaken those that it has left
+  kStatic,        // lost bonds do not count
+  kUncorrelated,  // the strengths of kStatic, dealt out to the edges at random
+  kOff,           // none: the pure body, for comparison
+};
+
+enum class ImpurityMode {
+  kExpected,  // every edge has the expected strength
+  kSampled,   // every edge has full or extreme strength, by its probability
+};
+
+enum class NoiseDistribution { kGaussian, kUniform };
+
+// A share of the potency for the nodes of a set.
+struct PotencyPatch {
+  std::string node_set;
+  double share = 1;  // of the potency, [0, 1]
+};
+
+// Impurities of the nodes: alpha = potency * map + noise * xi (method note, section 4).
+struct Impurities {
+  ImpurityEffect effect = ImpurityEffect::kDegradation;
+  ImpurityModel model = ImpurityModel::kGraph;
+  ImpurityMode mode = ImpurityMode::kExpected;
+  double potency = 0;
+  // The map, in [0, 1]: a share a node of the mesh; or patches, of which later ones win, and 0
+  // elsewhere; or neither, 1 everywhere.
+  std::vector<double> map = {};
+  std::vector<PotencyPatch> patches = {};
+  double noise = 0;  // standard deviation
+  NoiseDistribution distribution = NoiseDistribution::kGaussian;
+  double steepness = 5;      // k
+  double pure_offset = 0.2;  // a0
+  // omega; absent: 1 for degradation, 0.2 for upgradation
+  std::optional<double> degree_weight = std::nullopt;
+};
+
 // Which stress breaks edges of a material with fibres.
 enum class FractureStress {
   kMatrix,  // that of the isotropic solid, so that cracks follow the fibres
@@ -187,6 +232,7 @@ struct Scene {
   std::vector<InitialVelocity> initial_velocities;
   std::optional<Vec3> gravity;  // m/s^2
   Fracture fracture;
+  std::optional<Impurities> impurities;
   Timing timing;
   Quality quality;
   Output output;

@@ -51,6 +51,25 @@ void PutFibres(const FibreFamily& family, ByteWriter& out) {
   }
 }
 
+void PutImpurities(const Impurities& impurities, ByteWriter& out) {
+  out.Put(static_cast<uint32_t>(impurities.effect));
+  out.Put(static_cast<uint32_t>(impurities.model));
+  out.Put(static_cast<uint32_t>(impurities.mode));
+  out.Put(impurities.potency);
+  out.PutVector(impurities.map);
+  out.Put<uint64_t>(impurities.patches.size());
+  for (const PotencyPatch& patch : impurities.patches) {
+    PutText(patch.node_set, out);
+    out.Put(patch.share);
+  }
+  out.Put(impurities.noise);
+  out.Put(static_cast<uint32_t>(impurities.distribution));
+  out.Put(impurities.steepness);
+  out.Put(impurities.pure_offset);
+  out.Put<uint8_t>(impurities.degree_weight.has_value());
+  out.Put(impurities.degree_weight.value_or(0));
+}
+
 template <typename T>
 void Update(const std::vector<T>& items, StateHash& hash) {
   const uint64_t count = items.size();
@@ -112,6 +131,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.fracture.max_passes);
   out.Put(scene.fracture.simultaneity);
   out.Put(static_cast<uint32_t>(scene.fracture.stress));
+  out.Put<uint8_t>(scene.impurities.has_value());
+  if (scene.impurities) PutImpurities(*scene.impurities, out);
   out.Put(scene.timing.frames_per_second);
   out.Put(scene.timing.steps_per_frame);
   out.Put(scene.quality.newton_iterations);

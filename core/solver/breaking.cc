@@ -1,6 +1,7 @@
 #include "core/solver/breaking.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -13,16 +14,29 @@ Broadcast<double> Thresholds(const FracturePart& part) {
                                           : Broadcast<double>::PerItem(part.edge_thresholds.data());
 }
 
+std::optional<RandomGraph> GraphOf(const Model& model) {
+  if (!model.fracture->impurities) return std::nullopt;
+  const ImpurityPart& part = *model.fracture->impurities;
+  return RandomGraph(*model.incidence, part.settings, part.potencies, Thresholds(*model.fracture),
+                     part.edge_draws, part.edge_deal);
+}
+
 }  // namespace
 
 Breaking::Breaking(const Model& model)
     : model_(model),
-      fracture_(*model.mesh, *model.incidence, Thresholds(*model.fracture),
+      graph_(GraphOf(model)),
+      fracture_(*model.mesh, *model.incidence,
+                graph_ ? Broadcast<double>::PerItem(graph_->thresholds().data())
+                       : Thresholds(*model.fracture),
                 model.fracture->settings),
       positions_(model.masses.size()),
       stresses_(static_cast<size_t>(model.tet_count())) {
   // Edges without strength are cut before anything moves.
-  if (fracture_.broken_edge_count() > 0) ApplyDamage();
+  if (fracture_.broken_edge_count() > 0) {
+    ApplyDamage();
+    ResetGraph();
+  }
   Mark();
 }
 
@@ -43,6 +57,7 @@ int64_t Breaking::BreakPass(const NodalVector& displacements) {
                             fracture_.damage_factors()[static_cast<size_t>(changed.tet)]);
     }
   }
+  if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   return static_cast<int64_t>(result.broken_edges.size());
 }
 
@@ -60,15 +75,25 @@ absl::Status Breaking::RollBack() {
   ByteReader in(mark_);
   CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
   ApplyDamage();
+  ResetGraph();
   return absl::OkStatus();
 }
 
 absl::Status Breaking::Restore(ByteReader& in) {
   CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
   ApplyDamage();
+  ResetGraph();
   mark_.clear();
   Mark();
   return absl::OkStatus();
+}
+
+void Breaking::ResetGraph() {
+  if (!graph_) return;
+  graph_->Reset(fracture_.edge_broken());
+  std::vector<int32_t> edges(static_cast<size_t>(model_.incidence->edge_count()));
+  std::iota(edges.begin(), edges.end(), 0);
+  fracture_.LowerThresholds(edges);
 }
 
 void Breaking::ApplyDamage() {
@@ -88,7 +113,8 @@ std::vector<int32_t> Breaking::ClientBrokenEdges() const {
 
 int64_t Breaking::bytes() const {
   return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
-                              stresses_.size() * sizeof(Eigen::Matrix3d) + mark_.size());
+                              stresses_.size() * sizeof(Eigen::Matrix3d) + mark_.size()) +
+         (graph_ ? graph_->bytes() : 0);
 }
 
 }  // namespace cleave

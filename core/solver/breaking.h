@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "absl/strings/string_view.h"
 #include "core/base/vec3.h"
 #include "core/damage/fracture.h"
+#include "core/damage/random_graph.h"
 #include "core/model/model.h"
 #include "core/model/nodal_vector.h"
 
@@ -46,7 +48,11 @@ class Breaking {
  private:
   void ApplyDamage();
 
+  // The graph's bonds are the unbroken edges.
+  void ResetGraph();
+
   const Model& model_;
+  std::optional<RandomGraph> graph_;  // where the model has impurities
   EdgeFracture fracture_;
   std::vector<Vec3> positions_;            // m
   std::vector<Eigen::Matrix3d> stresses_;  // Pa

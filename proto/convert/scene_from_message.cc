@@ -183,6 +183,38 @@ class Converter {
     return material;
   }
 
+  // The enum after "unspecified", which stands for its first value; all enums of impurities have
+  // the order of their messages.
+  template <typename Enum>
+  Enum AfterUnspecified(absl::string_view field, int value, int count) {
+    if (value < 0 || value > count) {
+      faults_.Error(field, absl::StrCat(value, " is outside [0, ", count, "]"));
+      return Enum{};
+    }
+    return static_cast<Enum>(std::max(value, 1) - 1);
+  }
+
+  Impurities AllImpurities(const v1::Impurities& message) {
+    Impurities impurities;
+    impurities.effect = AfterUnspecified<ImpurityEffect>("impurities.effect", message.effect(), 2);
+    impurities.model = AfterUnspecified<ImpurityModel>("impurities.model", message.model(), 4);
+    impurities.mode = AfterUnspecified<ImpurityMode>("impurities.mode", message.mode(), 2);
+    impurities.potency = message.potency();
+    impurities.map.assign(message.map().begin(), message.map().end());
+    for (const v1::PotencyPatch& from : message.patches()) {
+      PotencyPatch& patch = impurities.patches.emplace_back();
+      patch.node_set = from.node_set();
+      if (from.has_share()) patch.share = from.share();
+    }
+    impurities.noise = message.noise();
+    impurities.distribution =
+        AfterUnspecified<NoiseDistribution>("impurities.distribution", message.distribution(), 2);
+    if (message.has_steepness()) impurities.steepness = message.steepness();
+    if (message.has_pure_offset()) impurities.pure_offset = message.pure_offset();
+    if (message.has_degree_weight()) impurities.degree_weight = message.degree_weight();
+    return impurities;
+  }
+
   Selector OneSelector(const std::string& field, const v1::Selector& message) {
     switch (message.kind_case()) {
       case v1::Selector::kBox:
@@ -323,6 +355,7 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   if (!message.gravity().empty()) {
     scene.gravity = convert.Vector("gravity", message.gravity(), {0, 0, 0});
   }
+  if (message.has_impurities()) scene.impurities = convert.AllImpurities(message.impurities());
   ReadSettings(message, scene, faults);
   scene.seed = message.seed();
   return scene;

@@ -131,6 +131,30 @@ void WriteMotion(const Motion& motion, v1::Motion* message) {
   Write(motion.rotation_axis, message->mutable_rotation_axis());
 }
 
+void WriteImpurities(const Impurities& impurities, v1::Impurities* message) {
+  message->set_effect(impurities.effect == ImpurityEffect::kUpgradation
+                          ? v1::IMPURITY_EFFECT_UPGRADATION
+                          : v1::IMPURITY_EFFECT_DEGRADATION);
+  // Both enums have the same order; 0 is "unspecified" in messages.
+  message->set_model(static_cast<v1::ImpurityModel>(static_cast<int>(impurities.model) + 1));
+  message->set_mode(impurities.mode == ImpurityMode::kSampled ? v1::IMPURITY_MODE_SAMPLED
+                                                              : v1::IMPURITY_MODE_EXPECTED);
+  message->set_potency(impurities.potency);
+  message->mutable_map()->Add(impurities.map.begin(), impurities.map.end());
+  for (const PotencyPatch& patch : impurities.patches) {
+    v1::PotencyPatch* to = message->add_patches();
+    to->set_node_set(patch.node_set);
+    to->set_share(patch.share);
+  }
+  message->set_noise(impurities.noise);
+  message->set_distribution(impurities.distribution == NoiseDistribution::kUniform
+                                ? v1::NOISE_DISTRIBUTION_UNIFORM
+                                : v1::NOISE_DISTRIBUTION_GAUSSIAN);
+  message->set_steepness(impurities.steepness);
+  message->set_pure_offset(impurities.pure_offset);
+  if (impurities.degree_weight.has_value()) message->set_degree_weight(*impurities.degree_weight);
+}
+
 void WriteSettings(const Scene& scene, v1::Scene& message) {
   message.mutable_fracture()->set_max_passes(scene.fracture.max_passes);
   message.mutable_fracture()->set_simultaneity(scene.fracture.simultaneity);
@@ -197,6 +221,8 @@ v1::Scene MessageFromScene(const Scene& scene) {
     Write(start.center, to->mutable_center());
   }
   if (scene.gravity.has_value()) Write(*scene.gravity, message.mutable_gravity());
+  if (scene.impurities.has_value())
+    WriteImpurities(*scene.impurities, message.mutable_impurities());
   WriteSettings(scene, message);
   message.set_seed(scene.seed);
   return message;

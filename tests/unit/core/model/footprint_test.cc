@@ -70,6 +70,13 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene = minimal;
   scene.materials[0].fibres.push_back({1e6, ConstantDirection{{1, 0, 0}}, 1});
   expect_adds(scene, "fibres");
+  // Where nothing breaks, strengths do not exist.
+  scene = minimal;
+  scene.impurities = Impurities{.potency = 1};
+  EXPECT_EQ(Plan(scene).total_bytes, base.total_bytes);
+  scene.materials[0].tensile_strength = 1e5;
+  EXPECT_EQ(Names(Plan(scene)).back(), "impurities");
+  EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
 }
 
 TEST(Footprint, FibresTakeTheBytesThatWerePlanned) {

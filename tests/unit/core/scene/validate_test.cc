@@ -58,6 +58,27 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
     return [direction](Scene& s) { s.materials[0].fibres = {FibresAlong(direction)}; };
   };
   const std::vector<Case> cases = {
+      {"impurities.potency", [](Scene& s) { s.impurities = Impurities{.potency = 101}; }},
+      {"impurities.noise", [](Scene& s) { s.impurities = Impurities{.noise = kNan}; }},
+      {"impurities.map[1]",
+       [](Scene& s) {
+         s.impurities = Impurities{.map = {0, 2}};
+       }},
+      {"impurities.patches[0].node_set",
+       [](Scene& s) {
+         s.impurities = Impurities{.patches = {{"crumbs", 1}}};
+       }},
+      {"impurities.patches[0].share",
+       [](Scene& s) {
+         s.impurities = Impurities{.patches = {{"left", -1}}};
+       }},
+      {"impurities.patches",
+       [](Scene& s) {
+         s.impurities = Impurities{.map = {0.5}, .patches = {{"left", 1}}};
+       }},
+      {"impurities.steepness", [](Scene& s) { s.impurities = Impurities{.steepness = 0}; }},
+      {"impurities.pure_offset", [](Scene& s) { s.impurities = Impurities{.pure_offset = 0}; }},
+      {"impurities.degree_weight", [](Scene& s) { s.impurities = Impurities{.degree_weight = 2}; }},
       {"materials[0].fibres[0]", fibres(std::monostate())},
       {"materials[0].fibres", [](Scene& s) { s.materials[0].fibres.resize(5); }},
       {"materials[0].fibres[0].stiffness",
@@ -230,6 +251,10 @@ TEST(ValidateSceneWithMesh, NamesTheFieldOfEveryKindOfFault) {
          s.node_sets[0].select[0] = SphereSelector{{9, 9, 9}, 1};
        }},
       {"motions[1].node_set", [](Scene& s) { s.motions.push_back(s.motions[0]); }},
+      {"impurities.map",
+       [](Scene& s) {
+         s.impurities = Impurities{.map = {0, 1}};
+       }},
       {"materials[0].fibres[0].per_tet.vectors",
        [](Scene& s) {
          s.materials[0].fibres = {FibresAlong(TetDirections{{{1, 0, 0}, {0, 1, 0}}})};

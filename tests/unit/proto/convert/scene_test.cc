@@ -113,6 +113,19 @@ constexpr char kEveryField[] = R"pb(
   }
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
+  impurities {
+    effect: IMPURITY_EFFECT_UPGRADATION
+    model: IMPURITY_MODEL_UNCORRELATED
+    mode: IMPURITY_MODE_SAMPLED
+    potency: 2
+    map: [ 0, 0.5, 1 ]
+    patches { node_set: "grip" share: 0.25 }
+    noise: 0.5
+    distribution: NOISE_DISTRIBUTION_UNIFORM
+    steepness: 4
+    pure_offset: 0.3
+    degree_weight: 0.75
+  }
 )pb";
 
 TEST(Scene, KeepsEveryFieldBothWays) {

@@ -1,0 +1,241 @@
+#include "core/damage/random_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/damage/impurity_noise.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
+
+namespace cleave {
+namespace {
+
+RandomGraphSettings Settings(ImpurityEffect effect) {
+  RandomGraphSettings settings;
+  settings.effect = effect;
+  return settings;
+}
+const RandomGraphSettings kDegradation = Settings(ImpurityEffect::kDegradation);
+const RandomGraphSettings kUpgradation = Settings(ImpurityEffect::kUpgradation);
+
+// The method note's reference table: k = 5, a0 = 0.2, omega = 1.
+struct Row {
+  double potency_i, potency_j, share_i, share_j, degradation, upgradation;
+};
+constexpr Row kReference[] = {
+    {0, 0, 1, 1, 1, 1},
+    {0, 0, 0.5, 1, 0.998773187291507, 0.501247919614216},
+    {0, 0, 0.5, 0.5, 0.996782626018198, 0.250780534538439},
+    {0, 0, 0.07142857142857142, 0.07142857142857142, 0.989874609488192, 0.00511903584779065},
+    {0, 0.1, 1, 1, 0.990505293218717, 1.09923421883515},
+    {0, 0.1, 0.5, 1, 0.984595256544464, 0.551276354018563},
+    {0, 0.1, 0.5, 0.5, 0.972384078353015, 0.30090906666352},
+    {0, 0.1, 0.07142857142857142, 0.07142857142857142, 0.940067464364796, 0.0122856809604378},
+    {0.1, 0.1, 1, 1, 0.955720027535583, 1.20814026678767},
+    {0.1, 0.1, 0.5, 1, 0.931756925626965, 0.661238694846664},
+    {0.1, 0.1, 0.5, 0.5, 0.900815491297981, 0.361043243554132},
+    {0.1, 0.1, 0.07142857142857142, 0.07142857142857142, 0.822018665302846, 0.029485564158718},
+    {0.3, 0.3, 1, 1, 0.717368224959621, 1.67966893852671},
+    {0.3, 0.3, 0.5, 1, 0.636098047356237, 1.03971852605524},
+    {0.3, 0.3, 0.5, 0.5, 0.555428453632469, 0.641256622407035},
+    {0.3, 0.3, 0.07142857142857142, 0.07142857142857142, 0.405158049252401, 0.138409960378568},
+    {0, 1, 1, 1, 0.801695197226789, 1.98032799764473},
+    {0, 1, 0.5, 1, 0.766215027424854, 1},
+    {0, 1, 0.5, 0.5, 0.626034493574884, 0.751090567931975},
+    {0, 1, 0.07142857142857142, 0.07142857142857142, 0.429782454102145, 0.0767840453215728},
+    {1, 1, 1, 1, 0.32448529719728, 3.8121461526837},
+    {1, 1, 0.5, 1, 0.240047460756946, 2.92283007747654},
+    {1, 1, 0.5, 0.5, 0.176191157826777, 2.22015571529356},
+    {1, 1, 0.07142857142857142, 0.07142857142857142, 0.0817991025511365, 1.14675025470083},
+    {0, 3.0, 1, 1, 0.65797219250414, 3.8121461526837},
+    {0, 3.0, 0.5, 1, 0.618992950791931, 1.98032799764473},
+    {0, 3.0, 0.5, 0.5, 0.419953463372721, 1.73812223760027},
+    {0, 3.0, 0.07142857142857142, 0.07142857142857142, 0.192570219649702, 0.220083252273572},
+    {3.0, 3.0, 1, 1, 0.170836490117807, 9.24738736717489},
+    {3.0, 3.0, 0.5, 1, 0.106396958861516, 8.88300854786718},
+    {3.0, 3.0, 0.5, 0.5, 0.0660183950549848, 8.43924777253856},
+    {3.0, 3.0, 0.07142857142857142, 0.07142857142857142, 0.0147610717258565, 7.39219797353758},
+    {1, 3.0, 1, 1, 0.236438781477354, 6.66248751935439},
+    {1, 3.0, 0.5, 1, 0.173494020918868, 5.38838539913357},
+    {1, 3.0, 0.5, 0.5, 0.108072760229782, 4.83153895266327},
+    {1, 3.0, 0.07142857142857142, 0.07142857142857142, 0.0347743154056463, 3.18753620891746},
+    {10.0, 10.0, 1, 1, 0.120167453300529, 10.0333111316338},
+    {10.0, 10.0, 0.5, 1, 0.0656708093144378, 10.0333111303907},
+    {10.0, 10.0, 0.5, 0.5, 0.0358032691512773, 10.0333111269295},
+    {10.0, 10.0, 0.07142857142857142, 0.07142857142857142, 0.00287621667222497, 10.0333111012043},
+    {1000000.0, 1000000.0, 1, 1, 0.0998171255458052, 10.033311132254},
+    {1000000.0, 1000000.0, 0.5, 1, 0.0500331769689073, 10.033311132254},
+    {1000000.0, 1000000.0, 0.5, 0.5, 0.0250322424553209, 10.033311132254},
+    {1000000.0, 1000000.0, 0.07142857142857142, 0.07142857142857142, 0.00051098073589529,
+     10.033311132254},
+};
+
+TEST(BondStrength, MatchesTheReferenceTable) {
+  const BondStrength weaker(kDegradation), stronger(kUpgradation);
+  for (const Row& row : kReference) {
+    EXPECT_NEAR(weaker(row.potency_i, row.potency_j, row.share_i, row.share_j), row.degradation,
+                1e-12);
+    EXPECT_NEAR(stronger(row.potency_i, row.potency_j, row.share_i, row.share_j), row.upgradation,
+                1e-11);
+  }
+}
+
+TEST(BondStrength, IsMonotoneInPotencyAndBonds) {
+  const BondStrength weaker(kDegradation), stronger(kUpgradation);
+  const double sizes[] = {0, 1e-300, 0.01, 0.1, 1, 10, 1e6, 1e300};
+  for (size_t k = 1; k < std::size(sizes); ++k) {
+    for (const double share : {0.1, 0.5, 1.0}) {
+      EXPECT_LE(weaker(sizes[k], 0.5, share, 1), weaker(sizes[k - 1], 0.5, share, 1));
+      EXPECT_GE(stronger(sizes[k], 0.5, share, 1), stronger(sizes[k - 1], 0.5, share, 1));
+    }
+    EXPECT_EQ(weaker(sizes[k], 0.5, 1, 1), weaker(-sizes[k], 0.5, 1, 1));
+  }
+  for (const double potency : {0.0, 0.3, 3.0}) {
+    EXPECT_LT(weaker(potency, potency, 0.5, 1), weaker(potency, potency, 1, 1));
+    EXPECT_LT(stronger(potency, potency, 0.5, 1), stronger(potency, potency, 1, 1));
+  }
+}
+
+TEST(BondStrength, SpansADecadeEachWay) {
+  const BondStrength weaker(kDegradation), stronger(kUpgradation);
+  EXPECT_NEAR(weaker(1e300, 1e300, 1, 1), weaker.extreme(), 1e-5);
+  EXPECT_NEAR(weaker.extreme(), 0.0998, 1e-4);
+  EXPECT_NEAR(stronger(1e300, 1e300, 1, 1), stronger.extreme(), 1e-12);
+  EXPECT_NEAR(stronger.extreme(), 10.03, 0.01);
+}
+
+TEST(NodeNoise, MatchesTheReferenceValues) {
+  const double gaussian[] = {0.616496519703275, -1.7062989364022842, 1.01901986204644,
+                             -0.7435913428507773};
+  const double uniform[] = {1.0960903425286554, -0.9712513518253518, 0.16761825398698713,
+                            0.6779942688522559};
+  for (int node = 0; node < 4; ++node) {
+    EXPECT_NEAR(NodeNoise(0, node, NoiseDistribution::kGaussian), gaussian[node], 1e-13);
+    EXPECT_NEAR(NodeNoise(0, node, NoiseDistribution::kUniform), uniform[node], 1e-13);
+  }
+}
+
+TEST(NodeNoise, HasMeanZeroAndVarianceOne) {
+  for (const NoiseDistribution distribution :
+       {NoiseDistribution::kGaussian, NoiseDistribution::kUniform}) {
+    double sum = 0, squares = 0;
+    constexpr int kCount = 100000;
+    for (int node = 0; node < kCount; ++node) {
+      const double noise = NodeNoise(0, node, distribution);
+      sum += noise;
+      squares += noise * noise;
+    }
+    EXPECT_NEAR(sum / kCount, 0, 0.01);
+    EXPECT_NEAR(std::sqrt(squares / kCount), 1, 0.005);
+  }
+}
+
+class Graph : public ::testing::Test {
+ protected:
+  RandomGraph Make(const RandomGraphSettings& settings, const std::vector<double>& draws = {},
+                   const std::vector<int32_t>& deal = {}) {
+    return RandomGraph(incidence_, settings, potencies_, Broadcast<double>::Uniform(strength_),
+                       draws, deal);
+  }
+  static std::vector<double> Copy(std::span<const double> values) {
+    return {values.begin(), values.end()};
+  }
+
+  const TetMesh mesh_ = KuhnBox({4, 3, 3}, {4, 3, 3});
+  const Incidence incidence_ = BuildIncidence(mesh_);
+  const double strength_ = 1000;
+  std::vector<double> potencies_ = std::vector<double>(static_cast<size_t>(mesh_.node_count()), 0);
+};
+
+TEST_F(Graph, ThePureBodyKeepsItsStrength) {
+  for (const RandomGraphSettings& settings : {kDegradation, kUpgradation}) {
+    const RandomGraph graph = Make(settings);
+    for (const double threshold : graph.thresholds()) EXPECT_NEAR(threshold, strength_, 1e-9);
+  }
+}
+
+TEST_F(Graph, ANodesPotencyChangesItsOwnEdgesOnly) {
+  const std::vector<double> before = Copy(Make(kDegradation).thresholds());
+  constexpr int32_t kNode = 37;
+  potencies_[kNode] = 2;
+  const std::vector<double> after = Copy(Make(kDegradation).thresholds());
+  for (size_t edge = 0; edge < before.size(); ++edge) {
+    const auto [a, b] = incidence_.edges[edge];
+    if (a == kNode || b == kNode) {
+      EXPECT_LT(after[edge], before[edge]);
+    } else {
+      EXPECT_EQ(after[edge], before[edge]);
+    }
+  }
+}
+
+TEST_F(Graph, LostBondsWeakenTheOthersAndAStartFromThemGivesTheSame) {
+  for (double& potency : potencies_) potency = 0.5;
+  RandomGraph graph = Make(kDegradation);
+  const std::vector<double> before = Copy(graph.thresholds());
+  const int32_t broken[] = {20, 60};
+  const auto changed = graph.Break(broken);
+  std::vector<uint8_t> fell(before.size(), 0);
+  for (const int32_t edge : changed) fell[static_cast<size_t>(edge)] = 1;
+  for (size_t edge = 0; edge < before.size(); ++edge) {
+    if (fell[edge] != 0) {
+      EXPECT_LT(graph.thresholds()[edge], before[edge]);
+    } else {
+      EXPECT_EQ(graph.thresholds()[edge], before[edge]);
+    }
+  }
+  const std::vector<double> weakened = Copy(graph.thresholds());
+  std::vector<uint8_t> mask(before.size(), 0);
+  graph.Reset(mask);
+  EXPECT_EQ(Copy(graph.thresholds()), before);
+  for (const int32_t edge : broken) mask[static_cast<size_t>(edge)] = 1;
+  graph.Reset(mask);
+  EXPECT_EQ(Copy(graph.thresholds()), weakened);
+}
+
+TEST_F(Graph, WithoutDegreesNothingFalls) {
+  RandomGraphSettings settings = kDegradation;
+  settings.follows_degrees = false;
+  RandomGraph graph = Make(settings);
+  const std::vector<double> before = Copy(graph.thresholds());
+  const int32_t broken[] = {20, 60};
+  EXPECT_TRUE(graph.Break(broken).empty());
+  EXPECT_EQ(Copy(graph.thresholds()), before);
+}
+
+TEST_F(Graph, DrawnStrengthsAreFullOrExtremeInTheirShares) {
+  for (double& potency : potencies_) potency = 0.5;
+  std::vector<double> draws(incidence_.edges.size());
+  for (size_t edge = 0; edge < draws.size(); ++edge)
+    draws[edge] = (static_cast<double>(edge) + 0.5) / static_cast<double>(draws.size());
+  RandomGraphSettings settings = kDegradation;
+  settings.follows_degrees = false;
+  const BondStrength bond(settings);
+  const double kappa = bond(0.5, 0.5, 1, 1);
+  const RandomGraph graph = Make(settings, draws);
+  size_t weak = 0;
+  for (const double threshold : graph.thresholds()) {
+    const bool is_weak = threshold == strength_ * bond.extreme();
+    EXPECT_TRUE(is_weak || threshold == strength_);
+    weak += is_weak ? 1 : 0;
+  }
+  EXPECT_NEAR(static_cast<double>(weak) / static_cast<double>(draws.size()), 1 - kappa, 0.01);
+}
+
+TEST_F(Graph, DealtStrengthsAreThoseOfOtherEdges) {
+  for (size_t node = 0; node < potencies_.size(); ++node)
+    potencies_[node] = static_cast<double>(node) / 30;
+  RandomGraphSettings settings = kDegradation;
+  settings.follows_degrees = false;
+  std::vector<int32_t> deal(incidence_.edges.size());
+  std::iota(deal.rbegin(), deal.rend(), 0);
+  const std::vector<double> own = Copy(Make(settings).thresholds());
+  const RandomGraph graph = Make(settings, {}, deal);
+  for (size_t edge = 0; edge < own.size(); ++edge)
+    EXPECT_EQ(graph.thresholds()[edge], own[own.size() - 1 - edge]);
+}
+
+}  // namespace
+}  // namespace cleave
