@@ -17,10 +17,12 @@
 
 namespace cleave {
 
-// Bounds of uploads; ServerLimits tells clients.
+// Bounds of what clients may bring; ServerLimits tells them.
 struct AssetLimits {
   int64_t max_asset_bytes = int64_t{1} << 30;
   uint32_t max_chunk_bytes = 1 << 20;
+  // Of a mesh, uploaded or made here: checking one takes about 100 bytes a tet.
+  int64_t max_tets = 8'000'000;
 };
 
 // Blobs named by the SHA-256 of their bytes (64 hex digits), and uploads on their way to become

@@ -12,6 +12,7 @@
 #include "absl/strings/string_view.h"
 #include "absl/strings/strip.h"
 #include "core/base/status.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 
@@ -26,6 +27,7 @@ Serves Cleave sessions over gRPC. Each session has its own cleave-worker process
   --worker PROGRAM          cleave-worker; default: beside this program
   --pool-threads N          threads for disk work and mesh checks; default 4
   --max-asset-bytes N       largest upload; default 1073741824
+  --max-tets N              largest mesh; default 8000000
   --insecure                allow plaintext on any address: whoever reaches it may do anything
   --help, --version
 
@@ -108,6 +110,9 @@ absl::Status SetFlag(absl::string_view flag, absl::string_view value, GatewayOpt
     // What one TetMesh message can hold.
     CLEAVE_RETURN_IF_ERROR(SetNumber(flag, value, 1, (int64_t{1} << 31) - 1, number));
     options.assets.max_asset_bytes = number;
+  } else if (flag == "max-tets") {
+    CLEAVE_RETURN_IF_ERROR(SetNumber(flag, value, 1, limits::kMaxTets, number));
+    options.assets.max_tets = number;
   } else {
     return Wrong(flag, "there is no such flag; see --help");
   }

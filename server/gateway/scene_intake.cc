@@ -62,6 +62,12 @@ absl::StatusOr<std::optional<TetMesh>> ObtainMesh(const MeshSource& mesh, const 
   return std::visit(
       [&](const auto& shape) -> absl::StatusOr<std::optional<TetMesh>> {
         if constexpr (requires { BuildMesh(shape); }) {
+          if (const double tets = EstimateTets(shape);
+              tets > static_cast<double>(assets.limits().max_tets)) {
+            return MakeError(absl::StatusCode::kResourceExhausted, "TET_QUOTA",
+                             absl::StrCat("the mesh would have about ", static_cast<int64_t>(tets),
+                                          " tets; this server takes ", assets.limits().max_tets));
+          }
           CLEAVE_ASSIGN_OR_RETURN(TetMesh built, BuildMesh(shape));
           return built;
         } else {

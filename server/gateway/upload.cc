@@ -62,9 +62,9 @@ absl::Status CheckSpec(const v1::AssetSpec& spec, const AssetLimits& limits) {
                  absl::StrCat("has ", spec.digest().sha256().size(), " bytes instead of 32"));
   }
   if (spec.digest().size_bytes() < 1 || spec.digest().size_bytes() > limits.max_asset_bytes) {
-    faults.Error("spec.digest.size_bytes", absl::StrCat(spec.digest().size_bytes(),
-                                                        " is outside [1, ", limits.max_asset_bytes,
-                                                        "]"));
+    faults.Error(
+        "spec.digest.size_bytes",
+        absl::StrCat(spec.digest().size_bytes(), " is outside [1, ", limits.max_asset_bytes, "]"));
   }
   if (spec.compression() < v1::COMPRESSION_UNSPECIFIED ||
       spec.compression() > v1::COMPRESSION_ZSTD) {
@@ -152,14 +152,14 @@ absl::Status AssetStore::Upload::Append(const v1::UploadAssetRequest& chunk) {
     return MakeBadField("upload_id", "must be the same in every message");
   }
   if (chunk.raw_size() > store_.limits_.max_chunk_bytes) {
-    return MakeBadField("raw_size", absl::StrCat(chunk.raw_size(), " is above ",
-                                                 store_.limits_.max_chunk_bytes));
+    return MakeBadField(
+        "raw_size", absl::StrCat(chunk.raw_size(), " is above ", store_.limits_.max_chunk_bytes));
   }
   if (chunk.offset() != received_) {
-    return MakeError(absl::StatusCode::kInvalidArgument, "UPLOAD_OFFSET",
-                     absl::StrCat("offset ", chunk.offset(), " is not where the upload is, ",
-                                  received_),
-                     {{"committed_size", absl::StrCat(received_)}});
+    return MakeError(
+        absl::StatusCode::kInvalidArgument, "UPLOAD_OFFSET",
+        absl::StrCat("offset ", chunk.offset(), " is not where the upload is, ", received_),
+        {{"committed_size", absl::StrCat(received_)}});
   }
   if (chunk.raw_size() > spec_.digest().size_bytes() - received_) {
     return MakeError(absl::StatusCode::kInvalidArgument, "UPLOAD_TOO_LONG",
@@ -213,6 +213,11 @@ absl::StatusOr<std::vector<std::string>> AssetStore::Upload::Check() const {
   absl::StatusOr<TetMesh> mesh = ParseMesh(bytes);
   if (!mesh.ok()) {
     return MakeError(absl::StatusCode::kInvalidArgument, "MESH_INVALID", mesh.status().message());
+  }
+  if (mesh->tet_count() > store_.limits_.max_tets) {
+    return MakeError(absl::StatusCode::kResourceExhausted, "TET_QUOTA",
+                     absl::StrCat("the mesh has ", mesh->tet_count(), " tets; this server takes ",
+                                  store_.limits_.max_tets));
   }
   const Faults faults = CheckAndOrientMesh(*mesh);
   if (!faults.ok()) return MakeBadRequest("MESH_INVALID", "mesh.", faults);

@@ -141,6 +141,35 @@ TEST_F(ControlTest, HealthAnswersWhileEveryCoreSolvesAndCallsWait) {
   }
 }
 
+TEST_F(ControlTest, ASessionThatCannotGoOnKeepsItsFramesAndSaysWhy) {
+  v1::Scene scene = BreakingBar(20);
+  scene.mutable_quality()->set_newton_iterations(1);
+  scene.mutable_quality()->set_max_step_halvings(0);
+  scene.mutable_quality()->set_residual_tolerance(1e-15);
+  scene.mutable_quality()->set_step_tolerance(1e-15);
+  Create(*client_, "stuck", scene);
+  ASSERT_TRUE(client_->RunSession("sessions/stuck", {}).ok());
+  FrameStreamOptions options;
+  options.session = "sessions/stuck";
+  FrameStream stream(*client_, options);
+  int64_t frames = 0;
+  while (true) {
+    const absl::StatusOr<std::optional<StreamedFrame>> frame = stream.Next();
+    ASSERT_TRUE(frame.ok()) << frame.status();
+    if (!frame->has_value()) break;
+    ++frames;
+  }
+  EXPECT_EQ(stream.end()->reason(), v1::END_REASON_FAILED);
+  EXPECT_GE(frames, 1);
+  server_.Kill();
+  server_.Start();
+  const absl::StatusOr<v1::Session> session = client_->GetSession("sessions/stuck");
+  ASSERT_TRUE(session.ok()) << session.status();
+  EXPECT_EQ(session->state(), v1::SESSION_STATE_FAILED);
+  EXPECT_EQ(session->error().reason(), "SOLVER_DIVERGED");
+  EXPECT_EQ(session->head_frame(), frames - 1);
+}
+
 TEST_F(ControlTest, CreatingTwiceIsOneSession) {
   v1::CreateSessionRequest request;
   request.set_session_id("bar");
@@ -284,11 +313,14 @@ TEST_F(ControlTest, AStoppedServerEndsStreamsWithAMessage) {
   v1::StreamFramesResponse message;
   ASSERT_TRUE(reader->Read(&message));
   EXPECT_TRUE(message.has_start());
-  EXPECT_EQ(server_.Stop(), 0);
+  // A viewer reads meanwhile; one that does not loses what its socket still holds.
+  std::future<int> stopped = std::async(std::launch::async, [this] { return server_.Stop(); });
   while (reader->Read(&message)) {
   }
+  EXPECT_EQ(stopped.get(), 0);
   EXPECT_EQ(message.end().reason(), v1::END_REASON_SHUTDOWN);
-  EXPECT_TRUE(reader->Finish().ok());
+  const grpc::Status status = reader->Finish();
+  EXPECT_TRUE(status.ok()) << status.error_code() << status.error_message() << server_.log();
 }
 
 }  // namespace

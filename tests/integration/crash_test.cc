@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <string>
 #include <vector>
@@ -133,6 +136,52 @@ TEST(CrashTest, APausedSessionStaysPausedAcrossARestartOfTheServer) {
   EXPECT_EQ(session->state(), v1::SESSION_STATE_IDLE);
   EXPECT_EQ(session->head_frame(), head);
   EXPECT_EQ(RunToEnd(*client, "bar"), UndisturbedFrames());
+}
+
+// Runs cleave-worker alone on a directory; returns its exit code, or -1 when a signal ended it.
+int RunWorker(const std::string& directory, pid_t* running = nullptr) {
+  const std::string program = CLEAVE_BINARY_DIR "/server/worker/cleave-worker";
+  const char* const arguments[] = {program.c_str(), directory.c_str(), nullptr};
+  pid_t pid = -1;
+  EXPECT_EQ(posix_spawn(&pid, program.c_str(), nullptr, nullptr,
+                        const_cast<char* const*>(arguments), environ),
+            0);
+  if (running != nullptr) {
+    *running = pid;
+    return 0;
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(CrashTest, AWorkerAloneRunsADirectoryToItsEndAcrossTerminations) {
+  TestServer server;
+  {
+    const std::unique_ptr<Client> client = server.Connect();
+    Create(*client, "bar", BreakingBar(kFrames));
+    WaitFor(*client, "bar", Rests);
+  }
+  ASSERT_EQ(server.Stop(), 0);
+  const std::string directory = server.session_directory("bar");
+  for (int i = 0; i < 3; ++i) {
+    // Wherever it is when the signal comes: loading, catching up, in a frame.
+    pid_t pid = -1;
+    RunWorker(directory, &pid);
+    kill(pid, SIGTERM);
+    int status = 0;
+    waitpid(pid, &status, 0);
+  }
+  EXPECT_EQ(RunWorker(directory), 0);
+  EXPECT_EQ(RunWorker(directory), 0);  // nothing is left to do
+  server.Start();
+  EXPECT_EQ(AllFrames(*server.Connect(), "bar"), UndisturbedFrames());
+}
+
+TEST(CrashTest, ADirectoryThatIsNoSessionEndsAWorkerWithAnError) {
+  TemporaryDirectory directory;
+  EXPECT_EQ(RunWorker(directory.path()), 1);
+  EXPECT_EQ(RunWorker("/nowhere"), 1);
 }
 
 TEST(CrashTest, ADamagedCheckpointAndATornJournalOnlyCostTime) {

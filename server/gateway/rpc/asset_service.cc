@@ -172,7 +172,7 @@ grpc::ServerUnaryReactor* AssetService::FindMissingAssets(
 
 grpc::ServerReadReactor<v1::UploadAssetRequest>* AssetService::UploadAsset(
     grpc::CallbackServerContext*, v1::UploadAssetResponse* response) {
-  return new UploadCall(executor_, assets_, response);
+  return new UploadCall(checks_, assets_, response);
 }
 
 grpc::ServerUnaryReactor* AssetService::QueryUploadStatus(

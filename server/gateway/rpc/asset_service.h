@@ -10,7 +10,9 @@ namespace cleave {
 // cleave.v1.AssetService. What it is given must outlive it.
 class AssetService final : public v1::AssetService::CallbackService {
  public:
-  AssetService(Executor& executor, AssetStore& assets) : executor_(executor), assets_(assets) {}
+  // `checks` is where uploads are written and checked, `executor` where the rest is done.
+  AssetService(Executor& executor, Executor& checks, AssetStore& assets)
+      : executor_(executor), checks_(checks), assets_(assets) {}
 
   grpc::ServerUnaryReactor* FindMissingAssets(grpc::CallbackServerContext* context,
                                               const v1::FindMissingAssetsRequest* request,
@@ -25,6 +27,7 @@ class AssetService final : public v1::AssetService::CallbackService {
 
  private:
   Executor& executor_;
+  Executor& checks_;
   AssetStore& assets_;
 };
 

@@ -15,7 +15,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "core/base/status.h"
-#include "core/scene/limits.h"
 #include "server/files/durable_file.h"
 #include "server/gateway/asset_store.h"
 #include "server/gateway/drain.h"
@@ -36,6 +35,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kMaxMessageBytes = 4 << 20;
+constexpr int kCheckThreads = 2;
 // Pressure on senders, not a budget: what all messages in flight may hold before reads slow down.
 constexpr size_t kQuotaBytes = 256 << 20;
 // A peer that is gone without a word is noticed within the sum of the two.
@@ -58,7 +58,7 @@ v1::ServerInfo DescribeServer(const AssetLimits& assets) {
   limits.set_max_message_bytes(kMaxMessageBytes);
   limits.set_max_chunk_bytes(assets.max_chunk_bytes);
   limits.set_max_asset_bytes(static_cast<uint64_t>(assets.max_asset_bytes));
-  limits.set_max_tets_per_session(limits::kMaxTets);
+  limits.set_max_tets_per_session(assets.max_tets);
   limits.set_max_step_frames(kMaxStepFrames);
   return info;
 }
@@ -126,13 +126,15 @@ absl::Status Serve(const GatewayOptions& options) {
 
   // These live until the process ends: gRPC's own end of things is not waited for.
   auto& executor = *new Executor(options.pool_threads);
+  // Mesh checks take seconds: on threads of their own they keep no stream waiting.
+  auto& checks = *new Executor(kCheckThreads);
   auto& drain = *new Drain;
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<AssetStore> assets,
                           AssetStore::Open(options.data, options.assets));
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<SessionStore> sessions,
                           SessionStore::Open(options.data, *assets, options.workers));
-  AssetService asset_service(executor, *assets);
-  SessionService session_service(executor, *sessions, drain);
+  AssetService asset_service(executor, checks, *assets);
+  SessionService session_service(executor, checks, *sessions, drain);
   FrameService frame_service(executor, *sessions, drain);
   ServerService server_service(DescribeServer(options.assets));
 

@@ -40,7 +40,7 @@ absl::Status CheckRun(const v1::RunSessionRequest& request) {
 grpc::ServerUnaryReactor* SessionService::CreateSession(grpc::CallbackServerContext* context,
                                                         const v1::CreateSessionRequest* request,
                                                         v1::CreateSessionResponse* response) {
-  return AnswerFrom(executor_, context, [this, request, response]() -> absl::Status {
+  return AnswerFrom(checks_, context, [this, request, response]() -> absl::Status {
     CLEAVE_ASSIGN_OR_RETURN(*response, sessions_.Create(*request));
     return absl::OkStatus();
   });

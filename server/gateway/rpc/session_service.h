@@ -16,8 +16,9 @@ inline constexpr uint32_t kMaxStepFrames = 10'000;
 // cleave.v1.SessionService. What it is given must outlive it.
 class SessionService final : public v1::SessionService::CallbackService {
  public:
-  SessionService(Executor& executor, SessionStore& sessions, Drain& drain)
-      : executor_(executor), sessions_(sessions), drain_(drain) {}
+  // `checks` is where scenes are checked and meshes made, `executor` where the rest is done.
+  SessionService(Executor& executor, Executor& checks, SessionStore& sessions, Drain& drain)
+      : executor_(executor), checks_(checks), sessions_(sessions), drain_(drain) {}
 
   grpc::ServerUnaryReactor* CreateSession(grpc::CallbackServerContext* context,
                                           const v1::CreateSessionRequest* request,
@@ -45,6 +46,7 @@ class SessionService final : public v1::SessionService::CallbackService {
 
  private:
   Executor& executor_;
+  Executor& checks_;
   SessionStore& sessions_;
   Drain& drain_;
 };

@@ -51,7 +51,7 @@ class AssetStoreTest : public testing::Test {
  protected:
   void SetUp() override {
     absl::StatusOr<std::unique_ptr<AssetStore>> store =
-        AssetStore::Open(directory_.path(), AssetLimits{1 << 20, 4096});
+        AssetStore::Open(directory_.path(), AssetLimits{1 << 20, 4096, 10});
     ASSERT_TRUE(store.ok());
     store_ = *std::move(store);
     bytes_ = *SerializeMesh(OneTet());
@@ -195,6 +195,15 @@ TEST_F(AssetStoreTest, AMeshThatCannotBeSimulatedIsRefusedWithItsFaults) {
       std::string(*status.GetPayload(std::string(kTypeUrlPrefix) + "google.rpc.BadRequest")));
   EXPECT_GE(faults.field_violations_size(), 1);
   EXPECT_THAT(faults.field_violations(0).field(), testing::StartsWith("mesh."));
+}
+
+TEST_F(AssetStoreTest, AMeshOfMoreTetsThanTheServerTakesIsRefused) {
+  TetMesh many = OneTet();
+  many.tets.resize(11, many.tets[0]);
+  bytes_ = *SerializeMesh(many);
+  auto upload = Begin();
+  ASSERT_TRUE(upload->Append(ChunkOf(bytes_, 0, 4096)).ok());
+  EXPECT_EQ(ReasonOf(upload->Finish().status()), "TET_QUOTA");
 }
 
 TEST_F(AssetStoreTest, BytesThatAreNoMeshAreRefused) {

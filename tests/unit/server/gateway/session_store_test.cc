@@ -73,6 +73,14 @@ TEST_F(SessionStoreTest, ValidatingCreatesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(directory_ / "assets"));
 }
 
+TEST_F(SessionStoreTest, AMeshThatIsTooLargeIsRefusedBeforeItIsMade) {
+  v1::CreateSessionRequest request = BoxRequest("box");
+  request.mutable_scene()->mutable_mesh()->mutable_box()->mutable_resolution()->set_cell_size(
+      0.0055);
+  const absl::Status status = store_->Create(request).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(status)) << status;
+}
+
 TEST_F(SessionStoreTest, WhatACrashLeftHalfMadeIsRemovedAndADamagedSessionHurtsNoOther) {
   ASSERT_TRUE(store_->Create(BoxRequest("good")).ok());
   ASSERT_TRUE(store_->Create(BoxRequest("torn")).ok());
