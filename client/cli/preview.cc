@@ -1,5 +1,6 @@
 #include "client/io/preview/preview.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -63,8 +64,17 @@ class Pictures {
 
  private:
   absl::Status DrawStill(int64_t frame) {
-    CLEAVE_ASSIGN_OR_RETURN(const FrameSource only, SelectFrames(run_.recording, frame, frame, 1));
-    CLEAVE_ASSIGN_OR_RETURN(const Image image, RenderStill(run_.mesh, only, 0, look_));
+    // The whole recording, so that stills of one run have one camera.
+    const auto& rows = run_.recording.rows;
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&](const IndexRow& each) { return each.frame == frame; });
+    if (row == rows.end()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--still: frame ", frame, " is not in the recording, which has ",
+                       rows.front().frame, " to ", rows.back().frame));
+    }
+    CLEAVE_ASSIGN_OR_RETURN(const Image image, RenderStill(run_.mesh, run_.recording.frames,
+                                                           row - rows.begin(), look_));
     return Write(absl::StrFormat("still_%06d.png", frame), image);
   }
   absl::Status DrawSheet() {

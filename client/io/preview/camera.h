@@ -31,7 +31,7 @@ struct CameraOptions {
   std::optional<double> azimuth;  // from the view square to the longest axis; default 20 to 32
   std::optional<double>
       elevation;         // above the ground, in (-89, 89); default by the body's flatness
-  double margin = 0.06;  // free part of the picture at each side, in [0, 0.45]
+  double margin = 0.08;  // free part of the picture at each side, in [0, 0.45]
 };
 
 // The closest camera of the default lens that holds all `points` (m), usually the points of all

@@ -132,7 +132,7 @@ Vector3f LitScene::Irradiance(const Hit& hit, uint32_t sample, float& shine) con
     if (direction.dot(hit.normal) <= 0) continue;
     const Vector3f origin = hit.position + offset_ * hit.normal;
     if (Blocked(origin, direction)) {
-      light += Vector3f::Constant(0.10f / kSkyRays);  // light thrown back by what blocks
+      light += Vector3f::Constant(0.13f / kSkyRays);  // light thrown back by what blocks
     } else {
       light += Sky(direction) / kSkyRays;
     }

@@ -44,8 +44,8 @@ TEST(Camera, HoldsEveryPointWithinTheMarginAndFillsThePicture) {
         const auto [x, y] = Project(*camera, point);
         most = std::max({most, std::abs(x), std::abs(y)});
       }
-      EXPECT_LE(most, 0.88 + 1e-9);
-      EXPECT_GE(most, 0.7);
+      EXPECT_LE(most, 0.84 + 1e-9);
+      EXPECT_GE(most, 0.65);
     }
   }
 }
