@@ -64,7 +64,7 @@ void AddMarks(std::span<const PlotSample> samples, const Axis& force, Drawing& d
     const double x = drawing.X(broken->time);
     drawing.Line(x, kUpper.top, x, kLower.bottom, "stroke=\"#6b7078\" stroke-dasharray=\"5 4\"");
     const bool room = x < kPlotRight - 190;
-    drawing.Text(room ? x + 7 : x - 7, kLower.top + 18, room ? "start" : "end",
+    drawing.Text(room ? x + 7 : x - 7, (kUpper.bottom + kLower.top) / 2 + 5, room ? "start" : "end",
                  " font-size=\"13\" fill=\"#555b63\"",
                  absl::StrCat("first break, ", WithUnit(broken->time, "s")));
   }
