@@ -62,9 +62,6 @@ class JsonScanner {
   std::string error_;
 };
 
-// The line, from 1, of the first byte that is not part of valid UTF-8; 0 when all is.
-int LineOfInvalidUtf8(absl::string_view text);
-
 }  // namespace cleave
 
 #endif  // CLEAVE_CLIENT_IO_SCENE_JSON_SCANNER_H_

@@ -10,8 +10,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "client/io/scene/field_names.h"
-#include "client/io/scene/json_scanner.h"
 #include "client/io/scene/parse.h"
+#include "client/io/scene/utf8.h"
 
 namespace cleave {
 namespace {

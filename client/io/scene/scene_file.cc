@@ -11,8 +11,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/io/scene/json_scanner.h"
 #include "client/io/scene/parse.h"
+#include "client/io/scene/utf8.h"
 #include "core/base/status.h"
 
 namespace cleave {

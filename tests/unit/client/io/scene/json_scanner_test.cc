@@ -57,13 +57,5 @@ TEST(JsonScanner, DeepNestingIsRefusedNotFollowed) {
   EXPECT_THAT(ErrorOf(std::string(1'000'000, '[')), HasSubstr("nested deeper"));
 }
 
-TEST(JsonScanner, Utf8IsCheckedByByte) {
-  EXPECT_EQ(LineOfInvalidUtf8("a\n\xC3\xA4\n\xF0\x9F\x98\x80"), 0);
-  EXPECT_EQ(LineOfInvalidUtf8("a\n\xC3"), 2);
-  EXPECT_EQ(LineOfInvalidUtf8("\xC0\x80"), 1);          // overlong
-  EXPECT_EQ(LineOfInvalidUtf8("\xED\xA0\x80"), 1);      // surrogate
-  EXPECT_EQ(LineOfInvalidUtf8("\xF4\x90\x80\x80"), 1);  // beyond U+10FFFF
-}
-
 }  // namespace
 }  // namespace cleave
