@@ -13,17 +13,12 @@
 #include "core/damage/edge_mask.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/scene/scene.h"
 
 namespace cleave {
 
 // A tet whose damage factor falls below this carries nothing worth solving for: it is dead.
 inline constexpr double kDeadFactor = 1e-3;
-
-// How an edge's stress follows from the stresses of its live tets.
-enum class StressAggregation {
-  kMean,  // weighted by rest volume; slivers do not break edges by themselves
-  kMax,
-};
 
 struct FractureSettings {
   double simultaneity = 0.9;  // edges at this share of their component's worst ratio break with it

@@ -16,6 +16,7 @@
 #include "core/model/fibre_directions.h"
 #include "core/model/fibre_term.h"
 #include "core/model/impurities.h"
+#include "core/model/weakened_edges.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
@@ -209,14 +210,11 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     model.motions.push_back(std::move(part));
   }
 
-  // Fracture, where a material can break.
-  const bool breaks =
-      std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const Material& material) { return material.tensile_strength.has_value(); });
-  if (breaks) {
+  // Fracture, where something can break.
+  if (CanBreak(scene)) {
     FracturePart& part = model.fracture.emplace();
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    if (scene.materials.size() == 1 && directional.empty()) {
+    if (scene.materials.size() == 1 && directional.empty() && scene.weakenings.empty()) {
       part.edge_thresholds = {*scene.materials[0].tensile_strength};
     } else {
       std::vector<double> strengths(material_of.size());
@@ -227,8 +225,11 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       part.edge_thresholds = directional.empty() ? EdgeThresholds(*model.incidence, strengths)
                                                  : EdgeThresholds(*model.mesh, *model.incidence,
                                                                   strengths, directional);
+      if (!scene.weakenings.empty())
+        WeakenEdges(scene, mesh, model.order, *model.incidence, part.edge_thresholds);
     }
     part.settings.simultaneity = scene.fracture.simultaneity;
+    part.settings.aggregation = scene.fracture.aggregation;
     part.max_passes = scene.fracture.max_passes;
     part.client_edge = ClientEdges(*model.incidence, model.order);
 

@@ -68,9 +68,7 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     add("motions", bytes);
   }
   if (!scene.initial_velocities.empty()) add("initial velocities", 0);
-  const bool breaks =
-      std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const Material& material) { return material.tensile_strength.has_value(); });
+  const bool breaks = CanBreak(scene);
   size_t families = 0;
   bool directional = false;
   for (const Material& material : scene.materials) {
@@ -81,7 +79,8 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   if (families > 0) add("fibres", static_cast<int64_t>(families) * FibreTermBytes(tets));
   if (breaks) {
     add("fracture",
-        (uniform && !directional ? 1 : edges) * kDouble + edges * kInt +         // thresholds, ids
+        (uniform && !directional && scene.weakenings.empty() ? 1 : edges) * kDouble +
+            edges * kInt +                                                       // thresholds, ids
             tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
             edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
             nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses

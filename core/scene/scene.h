@@ -192,12 +192,33 @@ enum class FractureStress {
   kTotal,
 };
 
+// How an edge's stress follows from the stresses of its live tets.
+enum class StressAggregation {
+  kMean,  // weighted by rest volume; slivers do not break edges by themselves
+  kMax,
+};
+
+// Edges by their nodes: both ends are in the set.
+struct EdgesOfNodes {
+  std::string node_set;
+};
+// Edges by what they touch: any point of them is in the box or sphere.
+using EdgeSelector = std::variant<std::monostate, EdgesOfNodes, BoxSelector, SphereSelector>;
+
+// Weakens or strengthens edges: their threshold counts `factor` times. 0 cuts them before the first
+// step, in any material; infinity makes them unbreakable.
+struct Weakening {
+  EdgeSelector edges;
+  double factor = 1;  // w, [0, infinity]
+};
+
 // How fracture is staged within a step (method note, section 7). Used only where some material has
 // a tensile strength.
 struct Fracture {
   int32_t max_passes = 60;    // break-and-solve passes a step
   double simultaneity = 0.9;  // edges at this share of the worst failure ratio break with it
   FractureStress stress = FractureStress::kMatrix;
+  StressAggregation aggregation = StressAggregation::kMean;
 };
 
 struct Timing {
@@ -232,12 +253,21 @@ struct Scene {
   std::vector<InitialVelocity> initial_velocities;
   std::optional<Vec3> gravity;  // m/s^2
   Fracture fracture;
+  std::vector<Weakening> weakenings;  // later ones win
   std::optional<Impurities> impurities;
   Timing timing;
   Quality quality;
   Output output;
   uint32_t seed = 0;
 };
+
+// Whether anything in the scene can break or is cut.
+inline bool CanBreak(const Scene& scene) {
+  for (const Material& material : scene.materials) {
+    if (material.tensile_strength.has_value()) return true;
+  }
+  return !scene.weakenings.empty();
+}
 
 }  // namespace cleave
 

@@ -150,6 +150,28 @@ void CheckInitialVelocities(const Scene& scene, const std::set<std::string>& nam
   }
 }
 
+void CheckWeakenings(const Scene& scene, const std::set<std::string>& names, Faults& faults,
+                     Checker& check) {
+  if (!check.List("weakenings", scene.weakenings.size())) return;
+  for (size_t i = 0; i < scene.weakenings.size(); ++i) {
+    const Weakening& weakening = scene.weakenings[i];
+    const SelectorRules shape{At("weakenings", i), faults, check};
+    if (const auto* of_nodes = std::get_if<EdgesOfNodes>(&weakening.edges)) {
+      CheckSetName(At("weakenings", i, "node_set"), of_nodes->node_set, names, faults);
+    } else if (const auto* box = std::get_if<BoxSelector>(&weakening.edges)) {
+      shape(*box);
+    } else if (const auto* sphere = std::get_if<SphereSelector>(&weakening.edges)) {
+      shape(*sphere);
+    } else {
+      faults.Error(At("weakenings", i), "names no edges; one of node_set, box, sphere is required");
+    }
+    if (!(weakening.factor >= 0)) {
+      faults.Error(At("weakenings", i, "factor"),
+                   absl::StrCat(weakening.factor, " is outside [0, inf]"));
+    }
+  }
+}
+
 void CheckImpurities(const Impurities& impurities, const std::set<std::string>& names,
                      Faults& faults, Checker& check) {
   check.Within("impurities.potency", impurities.potency, 0, limits::kMaxPotency);
@@ -306,6 +328,7 @@ Faults ValidateScene(const Scene& scene) {
   CheckMotions(scene, names, faults, check);
   CheckInitialVelocities(scene, names, faults, check);
   if (scene.gravity.has_value()) check.Coordinates("gravity", *scene.gravity);
+  CheckWeakenings(scene, names, faults, check);
   if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults, check);
   CheckSettings(scene, faults, check);
   return faults;

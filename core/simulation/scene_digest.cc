@@ -131,6 +131,19 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.fracture.max_passes);
   out.Put(scene.fracture.simultaneity);
   out.Put(static_cast<uint32_t>(scene.fracture.stress));
+  out.Put(static_cast<uint32_t>(scene.fracture.aggregation));
+  out.Put<uint64_t>(scene.weakenings.size());
+  for (const Weakening& weakening : scene.weakenings) {
+    out.Put<uint64_t>(weakening.edges.index());
+    if (const auto* of_nodes = std::get_if<EdgesOfNodes>(&weakening.edges)) {
+      PutText(of_nodes->node_set, out);
+    } else if (const auto* box = std::get_if<BoxSelector>(&weakening.edges)) {
+      PutSelector(*box, out);
+    } else if (const auto* sphere = std::get_if<SphereSelector>(&weakening.edges)) {
+      PutSelector(*sphere, out);
+    }
+    out.Put(weakening.factor);
+  }
   out.Put<uint8_t>(scene.impurities.has_value());
   if (scene.impurities) PutImpurities(*scene.impurities, out);
   out.Put(scene.timing.frames_per_second);

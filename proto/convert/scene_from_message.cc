@@ -183,8 +183,8 @@ class Converter {
     return material;
   }
 
-  // The enum after "unspecified", which stands for its first value; all enums of impurities have
-  // the order of their messages.
+  // The enum after "unspecified", which stands for its first value, where the enum has the
+  // order of its message.
   template <typename Enum>
   Enum AfterUnspecified(absl::string_view field, int value, int count) {
     if (value < 0 || value > count) {
@@ -213,6 +213,30 @@ class Converter {
     if (message.has_pure_offset()) impurities.pure_offset = message.pure_offset();
     if (message.has_degree_weight()) impurities.degree_weight = message.degree_weight();
     return impurities;
+  }
+
+  Weakening OneWeakening(const std::string& field, const v1::Weakening& message) {
+    Weakening weakening;
+    switch (message.edges_case()) {
+      case v1::Weakening::kNodeSet:
+        weakening.edges = EdgesOfNodes{message.node_set()};
+        break;
+      case v1::Weakening::kBox:
+        weakening.edges =
+            BoxSelector{RequiredVector(field + ".box.min", message.box().min(), {0, 0, 0}),
+                        RequiredVector(field + ".box.max", message.box().max(), {0, 0, 0})};
+        break;
+      case v1::Weakening::kSphere:
+        weakening.edges = SphereSelector{
+            RequiredVector(field + ".sphere.center", message.sphere().center(), {0, 0, 0}),
+            message.sphere().radius()};
+        break;
+      case v1::Weakening::EDGES_NOT_SET:
+        break;
+    }
+    if (!message.has_factor()) faults_.Error(field + ".factor", "is missing");
+    if (message.has_factor()) weakening.factor = message.factor();
+    return weakening;
   }
 
   Selector OneSelector(const std::string& field, const v1::Selector& message) {
@@ -355,6 +379,12 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   if (!message.gravity().empty()) {
     scene.gravity = convert.Vector("gravity", message.gravity(), {0, 0, 0});
   }
+  for (int i = 0; i < message.weakenings_size(); ++i) {
+    scene.weakenings.push_back(
+        convert.OneWeakening(absl::StrCat("weakenings[", i, "]"), message.weakenings(i)));
+  }
+  scene.fracture.aggregation = convert.AfterUnspecified<StressAggregation>(
+      "fracture.aggregation", message.fracture().aggregation(), 2);
   if (message.has_impurities()) scene.impurities = convert.AllImpurities(message.impurities());
   ReadSettings(message, scene, faults);
   scene.seed = message.seed();

@@ -131,6 +131,21 @@ void WriteMotion(const Motion& motion, v1::Motion* message) {
   Write(motion.rotation_axis, message->mutable_rotation_axis());
 }
 
+struct WriteEdges {
+  v1::Weakening* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const EdgesOfNodes& edges) const { message->set_node_set(edges.node_set); }
+  void operator()(const BoxSelector& box) const {
+    Write(box.min, message->mutable_box()->mutable_min());
+    Write(box.max, message->mutable_box()->mutable_max());
+  }
+  void operator()(const SphereSelector& sphere) const {
+    Write(sphere.center, message->mutable_sphere()->mutable_center());
+    message->mutable_sphere()->set_radius(sphere.radius);
+  }
+};
+
 void WriteImpurities(const Impurities& impurities, v1::Impurities* message) {
   message->set_effect(impurities.effect == ImpurityEffect::kUpgradation
                           ? v1::IMPURITY_EFFECT_UPGRADATION
@@ -221,6 +236,14 @@ v1::Scene MessageFromScene(const Scene& scene) {
     Write(start.center, to->mutable_center());
   }
   if (scene.gravity.has_value()) Write(*scene.gravity, message.mutable_gravity());
+  for (const Weakening& weakening : scene.weakenings) {
+    v1::Weakening* to = message.add_weakenings();
+    std::visit(WriteEdges{to}, weakening.edges);
+    to->set_factor(weakening.factor);
+  }
+  message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
+                                                  ? v1::STRESS_AGGREGATION_MAX
+                                                  : v1::STRESS_AGGREGATION_MEAN);
   if (scene.impurities.has_value())
     WriteImpurities(*scene.impurities, message.mutable_impurities());
   WriteSettings(scene, message);

@@ -68,6 +68,9 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.materials[0].tensile_strength = 1e5;
   expect_adds(scene, "fracture");
   scene = minimal;
+  scene.weakenings.push_back({SphereSelector{{0, 0, 0}, 1}, 0});
+  expect_adds(scene, "fracture");
+  scene = minimal;
   scene.materials[0].fibres.push_back({1e6, ConstantDirection{{1, 0, 0}}, 1});
   expect_adds(scene, "fibres");
   // Where nothing breaks, strengths do not exist.

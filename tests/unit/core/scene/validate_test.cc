@@ -58,6 +58,23 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
     return [direction](Scene& s) { s.materials[0].fibres = {FibresAlong(direction)}; };
   };
   const std::vector<Case> cases = {
+      {"weakenings[0]", [](Scene& s) { s.weakenings.emplace_back(); }},
+      {"weakenings[0].node_set",
+       [](Scene& s) {
+         s.weakenings = {{EdgesOfNodes{"crumbs"}, 1}};
+       }},
+      {"weakenings[0].sphere.radius",
+       [](Scene& s) {
+         s.weakenings = {{SphereSelector{{0, 0, 0}, -1}, 1}};
+       }},
+      {"weakenings[0].box.min[2]",
+       [](Scene& s) {
+         s.weakenings = {{BoxSelector{{0, 0, 1}, {1, 1, 0}}, 1}};
+       }},
+      {"weakenings[0].factor",
+       [](Scene& s) {
+         s.weakenings = {{EdgesOfNodes{"left"}, kNan}};
+       }},
       {"impurities.potency", [](Scene& s) { s.impurities = Impurities{.potency = 101}; }},
       {"impurities.noise", [](Scene& s) { s.impurities = Impurities{.noise = kNan}; }},
       {"impurities.map[1]",

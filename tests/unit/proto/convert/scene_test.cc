@@ -102,7 +102,7 @@ constexpr char kEveryField[] = R"pb(
     center: [ 0, 0, 3 ]
   }
   gravity: [ 0, 0, -9.81 ]
-  fracture { max_passes: 7 simultaneity: 0.8 stress: FRACTURE_STRESS_TOTAL }
+  fracture { max_passes: 7 simultaneity: 0.8 stress: FRACTURE_STRESS_TOTAL aggregation: STRESS_AGGREGATION_MAX }
   timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
   quality {
     newton_iterations: 4
@@ -113,6 +113,21 @@ constexpr char kEveryField[] = R"pb(
   }
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
+  weakenings { node_set: "grip" factor: inf }
+  weakenings {
+    box {
+      min: [ 0, 0, 0 ]
+      max: [ 1, 2, 3 ]
+    }
+    factor: 0
+  }
+  weakenings {
+    sphere {
+      center: [ 1, 2, 3 ]
+      radius: 4
+    }
+    factor: 0.5
+  }
   impurities {
     effect: IMPURITY_EFFECT_UPGRADATION
     model: IMPURITY_MODEL_UNCORRELATED
