@@ -10,8 +10,8 @@ out=$PWD/out
 bin=build/release
 
 ./deploy/install.sh
-cmake --preset release -DCLEAVE_BUILD_TESTS=OFF >/dev/null
-cmake --build --preset release
+cmake --preset release >/dev/null
+cmake --build --preset release --target cleave cleaved cleave-worker
 
 rm -rf "$out"
 mkdir -p "$out"
