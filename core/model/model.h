@@ -12,6 +12,7 @@
 #include "core/mesh/reorder.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/model/nodal_vector.h"
+#include "core/model/node_term.h"
 #include "core/model/prescribed_motion.h"
 #include "core/model/tet_term.h"
 #include "core/scene/scene.h"
@@ -36,8 +37,8 @@ struct FracturePart {
 };
 
 // What a scene becomes: just the parts that it asks for. Ids in it are the solver's, nodes and tets
-// in an order that is good for memory; `order` leads back. Does not change but for damage factors
-// in the terms.
+// in an order that is good for memory; `order` leads back. Does not change but for what
+// its terms carry from step to step.
 struct Model {
   // On the heap: terms point to it, and a model may move.
   std::unique_ptr<const TetMesh> mesh;  // m
@@ -46,6 +47,7 @@ struct Model {
   double mean_edge_length = 0;  // m
   std::vector<double> masses;   // kg, a node each; 0 for a node of no tet, which rests
   std::vector<std::unique_ptr<TetTerm>> tet_terms;
+  std::vector<std::unique_ptr<NodeTerm>> node_terms;
   std::optional<Vec3> gravity;  // m/s^2
   std::vector<PrescribedMotion> motions;
   std::optional<FracturePart> fracture;

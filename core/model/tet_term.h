@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/strings/string_view.h"
+#include "core/base/bytes.h"
 #include "core/model/nodal_vector.h"
 
 namespace cleave {
@@ -54,6 +56,14 @@ class TetTerm {
   // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor;
   // nothing where the term does not act in it.
   virtual void SetDamageFactor(int64_t tet, double factor) = 0;
+
+  // What decides later steps besides displacements and damage. Restore refuses (DataLoss) what
+  // cannot belong to this term, and then changes nothing.
+  virtual void Save(ByteWriter& out) const { (void)out; }
+  virtual absl::Status Restore(ByteReader& in) {
+    (void)in;
+    return absl::OkStatus();
+  }
 };
 
 }  // namespace cleave

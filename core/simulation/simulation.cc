@@ -22,7 +22,14 @@ namespace cleave {
 namespace {
 
 constexpr uint64_t kSavedMagic = 0x3145544154535643u;  // "CVSTATE1"
-constexpr uint32_t kSavedVersion = 1;
+constexpr uint32_t kSavedVersion = 2;
+
+// J, summed up since the start.
+struct Energies {
+  double external_work = 0;
+  double fracture_energy = 0;
+  double friction_dissipation = 0;
+};
 
 class BodySimulation final : public Simulation {
  public:
@@ -44,24 +51,19 @@ class BodySimulation final : public Simulation {
   absl::StatusOr<FrameReport> Advance(const StopFlag& stop) override {
     const Stopwatch watch;
     const State before = state_;
-    std::string broken_before;
-    if (Breaking* breaking = stepper_.breaking()) {
-      ByteWriter out(broken_before);
-      breaking->Save(out);
-    }
+    const std::string parts_before = SaveParts();
     StepReport steps;
     const absl::Status status = arena_.execute([&] { return RunFrame(stop, steps); });
     if (!status.ok()) {
       state_ = before;
-      if (Breaking* breaking = stepper_.breaking()) {
-        ByteReader in(broken_before);
-        CLEAVE_RETURN_IF_ERROR(breaking->Restore(in));
-      }
+      ByteReader in(parts_before);
+      CLEAVE_RETURN_IF_ERROR(stepper_.Restore(in));
       return status;
     }
     ++frame_;
-    external_work_ += steps.external_work;
-    fracture_energy_ += steps.fracture_energy;
+    energies_.external_work += steps.external_work;
+    energies_.fracture_energy += steps.fracture_energy;
+    energies_.friction_dissipation += steps.friction_dissipation;
     PublishPositions();
 
     FrameReport report;
@@ -70,7 +72,7 @@ class BodySimulation final : public Simulation {
     report.broken_edges = static_cast<int64_t>(broken_edges_.size());
     report.new_broken_edges += report.broken_edges;
     report.break_passes = steps.break_passes;
-    report.fracture_energy = fracture_energy_;
+    report.fracture_energy = energies_.fracture_energy;
     report.fracture_seconds = steps.fracture_seconds;
     report.frame = frame_;
     report.time = time();
@@ -81,7 +83,9 @@ class BodySimulation final : public Simulation {
     report.residual = steps.residual;
     report.kinetic_energy = KineticEnergy(model_, state_);
     report.elastic_energy = stepper_.solver().elastic_energy();
-    report.external_work = external_work_;
+    report.external_work = energies_.external_work;
+    report.contact_energy = steps.contact_energy;
+    report.friction_dissipation = energies_.friction_dissipation;
     report.fragments = fragments_;
     report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
     report.assembly_seconds = steps.assembly_seconds;
@@ -103,17 +107,10 @@ class BodySimulation final : public Simulation {
     out.Put(kSavedVersion);
     out.Put(digest_);
     out.Put(frame_);
-    out.Put(external_work_);
+    out.Put(energies_);
     out.PutVector(state_.displacements);
     out.PutVector(state_.velocities);
-    if (const Breaking* breaking = stepper_.breaking()) {
-      out.Put(fracture_energy_);
-      std::string broken;
-      ByteWriter part(broken);
-      breaking->Save(part);
-      out.Put<uint64_t>(broken.size());
-      out.PutBytes(broken);
-    }
+    out.PutBytes(SaveParts());
     out.Put(Crc32c(saved));
     return saved;
   }
@@ -133,28 +130,24 @@ class BodySimulation final : public Simulation {
     if (in.Get<uint64_t>() != digest_)
       return absl::FailedPreconditionError("the saved state is of another scene or mesh");
     const auto frame = in.Get<int64_t>();
-    const auto external_work = in.Get<double>();
+    const auto energies = in.Get<Energies>();
     State state;
     state.displacements = in.GetVector<Double4>();
     state.velocities = in.GetVector<Double4>();
-    double fracture_energy = 0;
-    absl::string_view broken;
-    Breaking* const breaking = stepper_.breaking();
-    if (breaking != nullptr) {
-      fracture_energy = in.Get<double>();
-      broken = in.GetBytes(in.Get<uint64_t>());
-    }
-    CLEAVE_RETURN_IF_ERROR(in.Finish("the saved state"));
+    if (!in.ok()) return absl::DataLossError("the saved state is truncated");
     if (frame < 0 || state.displacements.size() != state_.displacements.size() ||
         state.velocities.size() != state_.velocities.size())
       return absl::DataLossError("the saved state contradicts itself");
-    if (breaking != nullptr) {
-      ByteReader part(broken);
-      CLEAVE_RETURN_IF_ERROR(breaking->Restore(part));
+    const std::string parts_before = SaveParts();
+    absl::Status status = stepper_.Restore(in);
+    if (status.ok()) status = in.Finish("the saved state");
+    if (!status.ok()) {
+      ByteReader undo(parts_before);
+      CLEAVE_RETURN_IF_ERROR(stepper_.Restore(undo));
+      return status;
     }
     frame_ = frame;
-    external_work_ = external_work;
-    fracture_energy_ = fracture_energy;
+    energies_ = energies;
     state_ = std::move(state);
     PublishPositions();
     PublishBroken();
@@ -168,6 +161,13 @@ class BodySimulation final : public Simulation {
   double TimeOf(int64_t frame, int32_t step) const {
     return (static_cast<double>(frame) + static_cast<double>(step) / timing_.steps_per_frame) /
            timing_.frames_per_second;
+  }
+
+  std::string SaveParts() const {
+    std::string parts;
+    ByteWriter out(parts);
+    stepper_.Save(out);
+    return parts;
   }
 
   absl::Status RunFrame(const StopFlag& stop, StepReport& report) {
@@ -200,8 +200,7 @@ class BodySimulation final : public Simulation {
   Stepper stepper_;
   State state_;
   int64_t frame_ = 0;
-  double external_work_ = 0;    // J
-  double fracture_energy_ = 0;  // J
+  Energies energies_;
   int64_t fragments_ = 0;
   std::vector<Vec3> positions_;
   std::vector<int32_t> broken_edges_;

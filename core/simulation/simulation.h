@@ -28,8 +28,10 @@ struct FrameReport {
   double residual = 0;              // worst relative force residual at which a solve stopped
   double kinetic_energy = 0;        // J, at the end
   double elastic_energy = 0;        // J, at the end
-  double external_work = 0;         // J, by gravity and prescribed motions, since the start
+  double external_work = 0;         // J, by gravity, motions and loads, since the start
   double fracture_energy = 0;       // J, elastic energy lost to breaking, since the start
+  double contact_energy = 0;        // J, stored where bodies touch, at the end
+  double friction_dissipation = 0;  // J, since the start
   int64_t broken_edges = 0;         // since the start
   int64_t new_broken_edges = 0;     // in this frame
   int64_t fragments = 0;            // node components through unbroken edges, at the end

@@ -35,7 +35,8 @@ NewtonSolver::NewtonSolver(const Model& model)
       gradient_(model.masses.size()),
       residual_(model.masses.size()),
       search_(model.masses.size()),
-      trial_(model.masses.size()) {
+      trial_(model.masses.size()),
+      node_forces_(model.node_terms.empty() ? 0 : model.masses.size()) {
   double squares = 0;
   for (const double mass : model.masses) squares += mass * mass;
   gravity_force_ = std::sqrt(squares * Dot(gravity_, gravity_));
@@ -68,6 +69,10 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
     }
     return Double4{Sum(inertial), Sum(outer), Sum(inertial_force), Sum(elastic_force)};
   });
+  energy_ = sums[0] + sums[1] + elastic_energy_;
+  energy_magnitude_ = sums[0] + std::abs(sums[1]) + std::abs(elastic_energy_);
+  force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
+  if (!model_.node_terms.empty()) EvaluateNodeTerms(displacements);
   for (const FixedNode& fixed : fixed_nodes_) {
     Double4& residual = residual_[static_cast<size_t>(fixed.node)];
     residual = fixed.axes ? Splat(0) : residual;
@@ -78,10 +83,27 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
       sum += residual_[node] * residual_[node];
     return sum;
   });
-  energy_ = sums[0] + sums[1] + elastic_energy_;
-  energy_magnitude_ = sums[0] + std::abs(sums[1]) + std::abs(elastic_energy_);
   residual_norm_ = std::sqrt(Sum(squares));
-  force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
+}
+
+void NewtonSolver::EvaluateNodeTerms(const NodalVector& displacements) {
+  blocks_.Run([&](int64_t begin, int64_t end) {
+    std::fill(node_forces_.begin() + begin, node_forces_.begin() + end, Splat(0));
+  });
+  for (const auto& term : model_.node_terms) {
+    const double energy = term->AddForces(displacements, node_forces_);
+    energy_ += energy;
+    energy_magnitude_ += std::abs(energy);
+  }
+  force_scale_ += std::sqrt(Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      sum += node_forces_[node] * node_forces_[node];
+      gradient_[node] -= node_forces_[node];
+      residual_[node] = -gradient_[node];
+    }
+    return sum;
+  })));
 }
 
 bool NewtonSolver::ChooseBranches(const NodalVector& displacements) {
@@ -113,6 +135,8 @@ absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displa
     ScopedTimer timer(report.assembly_seconds);
     EdgeBlocks& blocks = matrix_.Clear();
     for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
+    for (const auto& term : model_.node_terms)
+      term->AddStiffness(displacements, matrix_.couplings());
     matrix_.Finish(inertia_);
     pcg_.Prepare(matrix_);
     const Double4 gross = blocks_.Sum(
@@ -227,7 +251,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
 
 int64_t NewtonSolver::bytes() const {
   return matrix_.bytes() + pcg_.bytes() + blocks_.bytes() +
-         static_cast<int64_t>(4 * gradient_.size() * sizeof(Double4) +
+         static_cast<int64_t>((4 * gradient_.size() + node_forces_.size()) * sizeof(Double4) +
                               inertia_.size() * sizeof(double) +
                               fixed_nodes_.size() * sizeof(FixedNode));
 }

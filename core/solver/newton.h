@@ -18,13 +18,14 @@ namespace cleave {
 
 // Solves one backward Euler step: finds the displacements x that minimise the incremental potential
 //
-//   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n)
+//   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n) + N(x)
 //
-// over the coordinates that are not given, by Newton's method with positive semidefinite element
-// stiffness and Armijo backtracking. Where the projection itself slows convergence down, the exact
-// stiffness is tried, for as long as the linear solve finds it positive. A linear solve goes no
-// further than the step needs. Source: method note, section 7. Not thread-safe; loops run on
-// the caller's TBB arena and give the same bits for any number of threads.
+// N being the energy of the node terms, over the coordinates that are not given, by Newton's method
+// with positive semidefinite element stiffness and Armijo backtracking. Where the projection itself
+// slows convergence down, the exact stiffness is tried, for as long as the linear solve finds it
+// positive. A linear solve goes no further than the step needs. Source: method note, section 7. Not
+// thread-safe; loops run on the caller's TBB arena and give the same bits for any number of
+// threads.
 class NewtonSolver {
  public:
   // `model` must outlive the solver.
@@ -52,6 +53,8 @@ class NewtonSolver {
  private:
   // Sets the energies, gradient, residual and their norms at `displacements`.
   void Evaluate(const State& start, double dt, const NodalVector& displacements);
+  // Adds the node terms to what Evaluate set.
+  void EvaluateNodeTerms(const NodalVector& displacements);
   // Sets `search_` by a linear solve at `displacements`; returns whether it leads downhill.
   absl::StatusOr<bool> FindSearchDirection(const NodalVector& displacements, Curvature curvature,
                                            const StopFlag& stop, StepReport& report);
@@ -71,6 +74,7 @@ class NewtonSolver {
   NodalVector residual_;         // N, -dE/dx, 0 at given coordinates
   NodalVector search_;           // m
   NodalVector trial_;            // m
+  NodalVector node_forces_;      // N, of the node terms; empty where there is none
 
   double slope_ = 0;             // J, dE along the search direction
   double energy_ = 0;            // J

@@ -1,5 +1,7 @@
 #include "core/solver/stepper.h"
 
+#include <string>
+
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
@@ -45,6 +47,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
                                 StepReport& report) {
   const double dt = end - start;
   if (breaking_) breaking_->Mark();
+  for (const auto& term : model_.node_terms) term->BeginStep(start, end, state);
   // Free nodes go on as they moved; given ones are where they will be.
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
@@ -60,6 +63,14 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
   state.displacements.swap(displacements_);
+  double stored_energy = 0;
+  for (const auto& term : model_.node_terms) {
+    const NodeTermWork work = term->EndStep(state);
+    report.external_work += work.external_work;
+    report.friction_dissipation += work.dissipation;
+    stored_energy += work.stored_energy;
+  }
+  report.contact_energy = stored_energy;
   ++report.steps;
   return absl::OkStatus();
 }
@@ -100,6 +111,43 @@ double Stepper::GravityWork(const State& state) const {
 
 int64_t Stepper::bytes() const {
   return newton_.bytes() + static_cast<int64_t>(displacements_.size() * sizeof(Double4));
+}
+
+namespace {
+
+// A part's bytes with their length before them, so that no part can read another's.
+template <typename Part>
+void SavePart(const Part& part, ByteWriter& out) {
+  std::string bytes;
+  ByteWriter writer(bytes);
+  part.Save(writer);
+  out.Put<uint64_t>(bytes.size());
+  out.PutBytes(bytes);
+}
+
+template <typename Part>
+absl::Status RestorePart(Part& part, absl::string_view name, ByteReader& in) {
+  ByteReader reader(in.GetBytes(in.Get<uint64_t>()));
+  if (!in.ok()) return absl::DataLossError("the saved state is truncated");
+  CLEAVE_RETURN_IF_ERROR(part.Restore(reader));
+  return reader.Finish(absl::StrCat("the saved state of ", name));
+}
+
+}  // namespace
+
+void Stepper::Save(ByteWriter& out) const {
+  if (breaking_) SavePart(*breaking_, out);
+  for (const auto& term : model_.tet_terms) SavePart(*term, out);
+  for (const auto& term : model_.node_terms) SavePart(*term, out);
+}
+
+absl::Status Stepper::Restore(ByteReader& in) {
+  if (breaking_) CLEAVE_RETURN_IF_ERROR(RestorePart(*breaking_, "fracture", in));
+  for (const auto& term : model_.tet_terms)
+    CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
+  for (const auto& term : model_.node_terms)
+    CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
+  return absl::OkStatus();
 }
 
 double KineticEnergy(const Model& model, const State& state) {

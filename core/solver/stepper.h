@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "core/base/bytes.h"
 #include "core/base/stop_flag.h"
 #include "core/model/model.h"
 #include "core/solver/breaking.h"
@@ -28,6 +29,12 @@ class Stepper {
   // instant in between: the caller keeps a copy.
   absl::Status Step(double start, double end, const StopFlag& stop, State& state,
                     StepReport& report);
+
+  // What decides later steps besides the state of the nodes: damage, and what terms carry along.
+  // Restore refuses (DataLoss) what cannot belong to this body; after an error the stepper may hold
+  // a part of either, and only another Restore makes it whole.
+  void Save(ByteWriter& out) const;
+  absl::Status Restore(ByteReader& in);
 
   // Of the last step that succeeded.
   const NewtonSolver& solver() const { return newton_; }

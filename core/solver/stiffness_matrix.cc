@@ -57,11 +57,13 @@ EdgeBlocks& StiffnessMatrix::Clear() {
   ParallelFor(static_cast<int64_t>(upper_.size()), 1 << 18, [&](int64_t begin, int64_t end) {
     std::memset(upper_.data() + begin, 0, static_cast<size_t>(end - begin) * sizeof(float));
   });
+  couplings_.Clear();
   return upper_;
 }
 
 void StiffnessMatrix::Finish(const std::vector<double>& inertia) {
   inertia_ = &inertia;
+  couplings_.Gather();
   ParallelFor(static_cast<int64_t>(lower_edge_.size()), kGrain, [&](int64_t begin, int64_t end) {
     for (int64_t slot = begin; slot < end; ++slot) {
       const float* from = upper_.data() + 9 * int64_t{lower_edge_[static_cast<size_t>(slot)]};
@@ -84,6 +86,13 @@ void StiffnessMatrix::Multiply(const NodalVector& x, int64_t begin, int64_t end,
                                lower_node_.data() + lower_begin_[node],
                                lower_node_.data() + lower_begin_[node + 1], x[node], x.data());
     product[node] = kCoordinates ? sum : Splat(0);
+  }
+  if (couplings_.empty()) return;
+  for (const NodeCouplings::Entry& entry : couplings_.Rows(begin, end)) {
+    const Double4 value = x[static_cast<size_t>(entry.column)];
+    product[static_cast<size_t>(entry.row)] += entry.columns[0] * SplatLane<0>(value) +
+                                               entry.columns[1] * SplatLane<1>(value) +
+                                               entry.columns[2] * SplatLane<2>(value);
   }
 }
 
@@ -122,13 +131,19 @@ void StiffnessMatrix::DiagonalBlock(int64_t node, Double4 columns[3]) const {
     sum[k] += (*inertia_)[n];
     columns[k] = kCoordinates ? sum : Splat(0);
   }
+  if (couplings_.empty()) return;
+  for (const NodeCouplings::Entry& entry : couplings_.Rows(node, node + 1)) {
+    if (entry.column != node) continue;
+    for (int k = 0; k < 3; ++k) columns[k] += entry.columns[k];
+  }
 }
 
 int64_t StiffnessMatrix::bytes() const {
   return static_cast<int64_t>((upper_.size() + lower_.size()) * sizeof(float) +
                               (upper_begin_.size() + upper_node_.size() + lower_begin_.size() +
                                lower_node_.size() + lower_edge_.size()) *
-                                  sizeof(int32_t));
+                                  sizeof(int32_t)) +
+         couplings_.bytes();
 }
 
 }  // namespace cleave

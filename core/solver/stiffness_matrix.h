@@ -7,12 +7,14 @@
 
 #include "core/base/double4.h"
 #include "core/model/nodal_vector.h"
+#include "core/model/node_couplings.h"
 #include "core/model/tet_term.h"
 
 namespace cleave {
 
 // The symmetric matrix of a backward Euler step, mass / dt^2 + elastic stiffness, in 3x3 blocks on
-// the rest edge graph: the pattern never changes. Blocks are float: they only steer the search, and
+// the rest edge graph, whose pattern never changes, besides the couplings of the moment. Blocks of
+// edges are float: they only steer the search, and
 // in the form of EdgeBlocks translations stay exact. Not thread-safe; loops run on the caller's TBB
 // arena and give the same bits for any number of threads.
 class StiffnessMatrix {
@@ -20,8 +22,11 @@ class StiffnessMatrix {
   // `edges` is Incidence::edges; it is not kept.
   StiffnessMatrix(const std::vector<std::array<int32_t, 2>>& edges, int64_t node_count);
 
-  // Sets all blocks to zero and hands them out to be added to; then call Finish.
+  // Sets all blocks to zero, drops all couplings and hands the blocks out to be added to; then call
+  // Finish.
   EdgeBlocks& Clear();
+  // To be added to between Clear and Finish.
+  NodeCouplings& couplings() { return couplings_; }
   // Takes over what was added. `inertia` is mass / dt^2, kg/s^2, a node each, and must stay as it
   // is until the next call.
   void Finish(const std::vector<double>& inertia);
@@ -46,6 +51,7 @@ class StiffnessMatrix {
   std::vector<int32_t> lower_begin_;
   std::vector<int32_t> lower_node_;
   std::vector<int32_t> lower_edge_;
+  NodeCouplings couplings_;
   const std::vector<double>* inertia_ = nullptr;
 };
 

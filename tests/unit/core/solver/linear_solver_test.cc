@@ -56,6 +56,30 @@ TEST_F(LinearSolver, TheMatrixIsSymmetricAndItsDiagonalBlocksAreThose) {
   }
 }
 
+TEST_F(LinearSolver, CouplingsAreInProductAndDiagonalUntilTheNextMatrix) {
+  const Eigen::MatrixXd without = Dense();
+  const Double4 spring[3] = {{2, 1, 0, 0}, {1, 3, -1, 0}, {0, -1, 4, 0}};
+  const Double4 coupling[3] = {{1, 2, 3, 0}, {4, 5, 6, 0}, {7, 8, 9, 0}};
+  matrix_.couplings().AddSpring(4, 30, spring);
+  matrix_.couplings().AddCoupling(11, 0, coupling);
+  matrix_.Finish(inertia_);
+  const Eigen::MatrixXd added = Dense() - without;
+  EXPECT_NEAR((added - added.transpose()).norm(), 0, 1e-12);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      EXPECT_NEAR(added(3 * 4 + row, 3 * 4 + column), spring[column][row], 1e-12);
+      EXPECT_NEAR(added(3 * 4 + row, 3 * 30 + column), -spring[column][row], 1e-12);
+      EXPECT_NEAR(added(3 * 11 + row, 3 * 0 + column), coupling[column][row], 1e-12);
+    }
+  }
+  Double4 columns[3];
+  matrix_.DiagonalBlock(30, columns);
+  EXPECT_NEAR(columns[1][1], without(3 * 30 + 1, 3 * 30 + 1) + 3, 1e-12);
+  matrix_.Clear();
+  matrix_.Finish(inertia_);
+  EXPECT_EQ(Dense()(3 * 4, 3 * 30), 0);
+}
+
 TEST_F(LinearSolver, ATranslationMeetsInertiaAloneToTheLastBit) {
   NodalVector x(static_cast<size_t>(mesh_.node_count()), Double4{3, -7, 11, 0}), product = x;
   matrix_.Multiply(x, 0, mesh_.node_count(), product);

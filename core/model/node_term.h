@@ -1,0 +1,59 @@
+#ifndef CLEAVE_CORE_MODEL_NODE_TERM_H_
+#define CLEAVE_CORE_MODEL_NODE_TERM_H_
+
+#include <cstdint>
+
+#include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "core/base/bytes.h"
+#include "core/model/nodal_vector.h"
+#include "core/model/node_couplings.h"
+
+namespace cleave {
+
+struct State;
+
+// What a node term did in a step, for the budget of its energy.
+struct NodeTermWork {
+  double external_work = 0;  // J, that it brought into the body from outside
+  double stored_energy = 0;  // J, that it holds at the end of the step
+  double dissipation = 0;    // J, that it took out for good, as friction does
+};
+
+// Forces on nodes from outside the tets: loads, contact. Ids are the solver's. Loops run on the
+// caller's TBB arena and give the same bits for any number of threads.
+class NodeTerm {
+ public:
+  virtual ~NodeTerm() = default;
+  virtual absl::string_view name() const = 0;
+  // Bytes that this term holds.
+  virtual int64_t bytes() const = 0;
+
+  // Called before each attempt at a step from `start` to `end` (s), whose state at the start is
+  // given: fixes what the step takes over from there, such as a load's value or the normal force
+  // that friction goes by. A step that fails is attempted again in halves, so this replaces what
+  // the last call fixed and changes nothing that EndStep keeps.
+  virtual void BeginStep(double start, double end, const State& state) = 0;
+  // Adds -dE/dx (N) at displacements from rest (m) to `forces`; returns the energy E, J.
+  virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
+  // Adds a positive semidefinite second derivative of E. Nothing where forces do not depend on
+  // displacements.
+  virtual void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) {
+    (void)displacements;
+    (void)couplings;
+  }
+  // The step that began has succeeded with this state at its end.
+  virtual NodeTermWork EndStep(const State& state) = 0;
+
+  // What decides later steps besides the state of the nodes. Restore refuses (DataLoss) what cannot
+  // belong to this term, and then changes nothing.
+  virtual void Save(ByteWriter& out) const { (void)out; }
+  virtual absl::Status Restore(ByteReader& in) {
+    (void)in;
+    return absl::OkStatus();
+  }
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_MODEL_NODE_TERM_H_
