@@ -29,6 +29,7 @@ struct Energies {
   double external_work = 0;
   double fracture_energy = 0;
   double friction_dissipation = 0;
+  double integration_dissipation = 0;
 };
 
 class BodySimulation final : public Simulation {
@@ -64,6 +65,7 @@ class BodySimulation final : public Simulation {
     energies_.external_work += steps.external_work;
     energies_.fracture_energy += steps.fracture_energy;
     energies_.friction_dissipation += steps.friction_dissipation;
+    energies_.integration_dissipation += steps.integration_dissipation;
     PublishPositions();
 
     FrameReport report;
@@ -82,10 +84,11 @@ class BodySimulation final : public Simulation {
     report.linear_iterations = steps.linear_iterations;
     report.residual = steps.residual;
     report.kinetic_energy = KineticEnergy(model_, state_);
-    report.elastic_energy = stepper_.solver().elastic_energy();
+    report.elastic_energy = stepper_.elastic_energy();
     report.external_work = energies_.external_work;
     report.contact_energy = steps.contact_energy;
     report.friction_dissipation = energies_.friction_dissipation;
+    report.integration_dissipation = energies_.integration_dissipation;
     report.fragments = fragments_;
     report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
     report.assembly_seconds = steps.assembly_seconds;

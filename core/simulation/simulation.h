@@ -32,6 +32,9 @@ struct FrameReport {
   double fracture_energy = 0;       // J, elastic energy lost to breaking, since the start
   double contact_energy = 0;        // J, stored where bodies touch, at the end
   double friction_dissipation = 0;  // J, since the start
+  // J, what time integration took out, since the start. External work is the change of kinetic,
+  // elastic and contact energy, and what fracture, friction and integration took out.
+  double integration_dissipation = 0;
   int64_t broken_edges = 0;         // since the start
   int64_t new_broken_edges = 0;     // in this frame
   int64_t fragments = 0;            // node components through unbroken edges, at the end

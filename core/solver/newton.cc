@@ -106,6 +106,20 @@ void NewtonSolver::EvaluateNodeTerms(const NodalVector& displacements) {
   })));
 }
 
+double NewtonSolver::ElasticWork(const State& start, double dt, const NodalVector& displacements) {
+  return Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      const Double4 moved = displacements[node] - start.displacements[node];
+      Double4 force = inertia_[node] * (moved - dt * start.velocities[node]) -
+                      model_.masses[node] * gravity_ - gradient_[node];
+      if (!node_forces_.empty()) force -= node_forces_[node];
+      sum += force * moved;
+    }
+    return sum;
+  }));
+}
+
 bool NewtonSolver::ChooseBranches(const NodalVector& displacements) {
   bool changed = false;
   for (const auto& term : model_.tet_terms) changed |= term->ChooseBranches(displacements);
@@ -142,7 +156,7 @@ absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displa
     const Double4 gross = blocks_.Sum(
         [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
     rounding_energy_ = kTermRounding * gross[0];
-    rounding_force_ = kTermRounding * std::sqrt(gross[1]);
+    rounding_force_ = rounding_inertia_ + kTermRounding * std::sqrt(gross[1]);
   }
   ScopedTimer timer(report.linear_solve_seconds);
   const Quality& quality = model_.quality;
@@ -165,17 +179,23 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
                                  NodalVector& displacements, StepReport& report) {
   const Quality& quality = model_.quality;
   const double step_limit = quality.step_tolerance * model_.mean_edge_length;
-  for (size_t node = 0; node < inertia_.size(); ++node)
+  double rounded_squares = 0;
+  for (size_t node = 0; node < inertia_.size(); ++node) {
     inertia_[node] = model_.masses[node] / (dt * dt);
+    const Double4 reach = Abs(start.displacements[node]) + dt * Abs(start.velocities[node]);
+    rounded_squares += inertia_[node] * inertia_[node] * Dot(reach, reach);
+  }
+  rounding_inertia_ = kTermRounding * std::sqrt(rounded_squares);
 
   {
     ScopedTimer timer(report.assembly_seconds);
     ChooseBranches(displacements);
     Evaluate(start, dt, displacements);
     initial_elastic_energy_ = elastic_energy_;
+    initial_energy_ = energy_;
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  rounding_force_ = 0;
+  rounding_force_ = rounding_inertia_;
   double last_step = kInfinity;
   double last_norm = kInfinity;
   double last_share = 0;

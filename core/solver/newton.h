@@ -44,6 +44,10 @@ class NewtonSolver {
   // outside, besides gravity, to move as it does: 0 up to the residual at free coordinates.
   const NodalVector& outer_forces() const { return gradient_; }
   double elastic_energy() const { return elastic_energy_; }
+  // J, by which that Solve lowered the incremental potential.
+  double decrease() const { return initial_energy_ - energy_; }
+  // J, work of the elastic forces at the solution along the way from the start of the step.
+  double ElasticWork(const State& start, double dt, const NodalVector& displacements);
   // J, where that Solve started.
   double initial_elastic_energy() const { return initial_elastic_energy_; }
 
@@ -78,13 +82,15 @@ class NewtonSolver {
 
   double slope_ = 0;             // J, dE along the search direction
   double energy_ = 0;            // J
+  double initial_energy_ = 0;    // J, where the Solve started
   double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
   double elastic_energy_ = 0;    // J
   double initial_elastic_energy_ = 0;
-  double residual_norm_ = 0;    // N
-  double rounding_energy_ = 0;  // J, what rounding may hide of the elastic energy
-  double rounding_force_ = 0;   // N, and of the forces
-  double force_scale_ = 0;      // N, what the residual is held against
+  double residual_norm_ = 0;     // N
+  double rounding_energy_ = 0;   // J, what rounding may hide of the elastic energy
+  double rounding_force_ = 0;    // N, and of the forces
+  double rounding_inertia_ = 0;  // N, of those the share of inertia: large where steps are tiny
+  double force_scale_ = 0;       // N, what the residual is held against
 };
 
 }  // namespace cleave

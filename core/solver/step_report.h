@@ -13,9 +13,11 @@ struct StepReport {
   int32_t newton_iterations = 0;
   int32_t linear_iterations = 0;
   int32_t break_passes = 0;
-  double residual = 0;              // worst relative force residual at which a solve stopped
-  double external_work = 0;         // J, by gravity, prescribed motions and loads
-  double fracture_energy = 0;       // J, elastic energy lost to breaking
+  double residual = 0;         // worst relative force residual at which a solve stopped
+  double external_work = 0;    // J, by gravity, prescribed motions and loads
+  double fracture_energy = 0;  // J, elastic energy lost to breaking
+  // J, what backward Euler and the staging of fracture within steps took out.
+  double integration_dissipation = 0;
   double contact_energy = 0;        // J, that node terms hold at the end of the last step
   double friction_dissipation = 0;  // J, that node terms took out for good
   double assembly_seconds = 0;

@@ -53,12 +53,24 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, end, displacements_);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
-  // Motions move the body as it was, then it breaks: that way work and fracture energy match.
+  // Motions move the body as it was, then it breaks: that way work and fracture energy match. What
+  // integration loses is the elastic energy beyond its tangent, the squared change of velocity and
+  // what re-solves give away, each positive where energies are convex.
   const double motion_work = MotionWork(state);
+  double integration =
+      elastic_energy_ - newton_.elastic_energy() - newton_.ElasticWork(state, dt, displacements_);
+  const KineticEnergies intact = MovingEnergies(dt, state);
+  KineticEnergies moving = intact;
   double fracture_energy = 0;
-  if (breaking_) CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, report));
+  if (breaking_) {
+    CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, report));
+    moving = MovingEnergies(dt, state);
+  }
+  integration += moving.change + intact.end - moving.end;
+  elastic_energy_ = newton_.elastic_energy();
 
   report.fracture_energy += fracture_energy;
+  report.integration_dissipation += integration;
   report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
@@ -76,7 +88,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
 }
 
 absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
-                            double& fracture_energy, StepReport& report) {
+                            double& fracture_energy, double& integration, StepReport& report) {
   for (int32_t pass = 0; pass < model_.fracture->max_passes; ++pass) {
     {
       ScopedTimer timer(report.fracture_seconds);
@@ -86,8 +98,20 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     const double before = newton_.elastic_energy();
     CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
     fracture_energy += before - newton_.initial_elastic_energy();
+    integration += newton_.decrease();
   }
   return absl::OkStatus();
+}
+
+Stepper::KineticEnergies Stepper::MovingEnergies(double dt, const State& state) const {
+  KineticEnergies energies;
+  for (size_t node = 0; node < displacements_.size(); ++node) {
+    const Double4 velocity = (displacements_[node] - state.displacements[node]) / dt;
+    const Double4 change = velocity - state.velocities[node];
+    energies.end += 0.5 * model_.masses[node] * Dot(velocity, velocity);
+    energies.change += 0.5 * model_.masses[node] * Dot(change, change);
+  }
+  return energies;
 }
 
 double Stepper::MotionWork(const State& state) const {
@@ -136,17 +160,20 @@ absl::Status RestorePart(Part& part, absl::string_view name, ByteReader& in) {
 }  // namespace
 
 void Stepper::Save(ByteWriter& out) const {
+  out.Put(elastic_energy_);
   if (breaking_) SavePart(*breaking_, out);
   for (const auto& term : model_.tet_terms) SavePart(*term, out);
   for (const auto& term : model_.node_terms) SavePart(*term, out);
 }
 
 absl::Status Stepper::Restore(ByteReader& in) {
+  const auto elastic_energy = in.Get<double>();
   if (breaking_) CLEAVE_RETURN_IF_ERROR(RestorePart(*breaking_, "fracture", in));
   for (const auto& term : model_.tet_terms)
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
   for (const auto& term : model_.node_terms)
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
+  elastic_energy_ = elastic_energy;
   return absl::OkStatus();
 }
 

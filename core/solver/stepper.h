@@ -38,6 +38,8 @@ class Stepper {
 
   // Of the last step that succeeded.
   const NewtonSolver& solver() const { return newton_; }
+  // J, of the last step that succeeded.
+  double elastic_energy() const { return elastic_energy_; }
   // Null where nothing breaks.
   Breaking* breaking() { return breaking_ ? &*breaking_ : nullptr; }
   const Breaking* breaking() const { return breaking_ ? &*breaking_ : nullptr; }
@@ -46,9 +48,17 @@ class Stepper {
  private:
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
-  // Alternates breaking and solving until no edge fails. Adds the elastic energy lost, J.
+  // Alternates breaking and solving until no edge fails. Adds the elastic energy lost to
+  // breaking, and what re-solves gave away, J.
   absl::Status Break(double dt, const StopFlag& stop, const State& state, double& fracture_energy,
-                     StepReport& report);
+                     double& integration, StepReport& report);
+  // J, of moving from `state` to `displacements_` in `dt` (s): where that ends, and half the
+  // squared change of velocity.
+  struct KineticEnergies {
+    double end = 0;
+    double change = 0;
+  };
+  KineticEnergies MovingEnergies(double dt, const State& state) const;
   // J, over the step from `state` to `displacements_`.
   double MotionWork(const State& state) const;
   double GravityWork(const State& state) const;
@@ -57,6 +67,7 @@ class Stepper {
   NewtonSolver newton_;
   std::optional<Breaking> breaking_;
   NodalVector displacements_;  // m, at the end of the step
+  double elastic_energy_ = 0;  // J, of the state
 };
 
 // J.

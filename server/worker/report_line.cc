@@ -42,6 +42,7 @@ std::string ReportLine(const FrameReport& report) {
   add("fracture_energy", Number(report.fracture_energy));
   add("contact_energy", Number(report.contact_energy));
   add("friction_dissipation", Number(report.friction_dissipation));
+  add("integration_dissipation", Number(report.integration_dissipation));
   add("broken_edges", absl::StrCat(report.broken_edges));
   add("new_broken_edges", absl::StrCat(report.new_broken_edges));
   add("fragments", absl::StrCat(report.fragments));

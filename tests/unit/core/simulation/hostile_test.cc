@@ -55,6 +55,14 @@ TEST(Hostile, StepsOfTenthsOfMicroseconds) {
   MustRun(scene, KuhnBox({3, 3, 3}, {1, 1, 1}), 5);
 }
 
+TEST(Hostile, StepsOfNanosecondsOfASpinningBodyEndAtRounding) {
+  Scene scene = TightScene(1e5, 0.3, 1000, 1e-9);
+  InitialVelocity spin;
+  spin.angular_velocity = {0, 0, 4};
+  scene.initial_velocities.push_back(spin);
+  MustRun(scene, KuhnBox({3, 3, 3}, {1, 1, 1}), 3);
+}
+
 TEST(Hostile, BodiesFromNanometresToThousandsOfKilometres) {
   for (const double size : {1e-9, 1e-3, 1e3, 1e6}) {
     SCOPED_TRACE(size);

@@ -1,0 +1,123 @@
+// The budget of energy: what comes in from outside is what the body holds more and what was taken
+// out of it by name, and nothing is created.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/simulation/simulation.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/solver/test_scene.h"
+
+namespace cleave {
+namespace {
+
+constexpr double kTolerance = 1e-4;  // of the largest energy in the budget so far
+
+struct Budget {
+  FrameReport last;
+  double largest = 0;  // J, of any energy in the budget so far
+};
+
+// Runs the scene and holds every frame's budget to the tolerance.
+Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic_energy = 0) {
+  Budget budget;
+  const auto simulation = *Simulation::Create(scene, mesh, Simulation::Options{});
+  const StopFlag stop;
+  double dissipated = 0;
+  for (int64_t frame = 0; frame < scene.timing.frame_count; ++frame) {
+    const auto report = simulation->Advance(stop);
+    EXPECT_TRUE(report.ok()) << report.status();
+    if (!report.ok()) break;
+    const double held = report->kinetic_energy + report->elastic_energy + report->contact_energy;
+    const double taken =
+        report->fracture_energy + report->friction_dissipation + report->integration_dissipation;
+    for (const double energy : {report->external_work, held, taken, initial_kinetic_energy})
+      budget.largest = std::max(budget.largest, std::abs(energy));
+    EXPECT_NEAR(report->external_work + initial_kinetic_energy, held + taken,
+                kTolerance * budget.largest)
+        << "frame " << frame;
+    EXPECT_GE(taken, dissipated - kTolerance * budget.largest) << "frame " << frame;
+    dissipated = taken;
+    budget.last = *report;
+  }
+  return budget;
+}
+
+// A bar along x, held at its left end.
+Scene Bar(double dt, int frames) {
+  Scene scene = TightScene(1e5, 0.3, 1000, dt);
+  scene.quality.residual_tolerance = 1e-7;
+  scene.timing.frame_count = frames;
+  AddBoxSet(scene, "left", {-1, -1, -1}, {1e-9, 2, 2});
+  AddBoxSet(scene, "right", {3 - 1e-9, -1, -1}, {4, 2, 2});
+  AddMotion(scene, "left");
+  return scene;
+}
+
+const TetMesh& BarMesh() {
+  static const TetMesh mesh = KuhnBox({6, 2, 2}, {3, 1, 1});
+  return mesh;
+}
+
+TEST(EnergyBudget, ClosesForABarThatFallsOnItsEndAndSwings) {
+  Scene scene = Bar(0.02, 60);
+  scene.gravity = Vec3{0, 0, -9.81};
+  const Budget budget = MustClose(scene, BarMesh());
+  EXPECT_GT(budget.last.integration_dissipation, 0.01 * budget.largest);
+}
+
+TEST(EnergyBudget, ClosesForEveryElasticLawAndFibres) {
+  for (const ElasticLaw law : {ElasticLaw::kStableNeoHookean, ElasticLaw::kInvertibleNeoHookean,
+                               ElasticLaw::kCorotatedLinear, ElasticLaw::kStVenantKirchhoff}) {
+    Scene scene = Bar(0.01, 20);
+    scene.materials[0].law = law;
+    scene.materials[0].fibres.push_back({2e5, ConstantDirection{{1, 1, 0}}});
+    AddMotion(scene, "right").keyframes = {{0, {0, 0, 0}, 0}, {0.1, {0.4, 0, 0.2}, 0}};
+    MustClose(scene, BarMesh());
+  }
+}
+
+TEST(EnergyBudget, SmallerStepsLoseLessToIntegration) {
+  double lost[2];
+  for (const int k : {0, 1}) {
+    const int steps = k == 0 ? 1 : 4;
+    Scene scene = Bar(0.02 / steps, 40 * steps);
+    scene.gravity = Vec3{0, 0, -9.81};
+    const Budget budget = MustClose(scene, BarMesh());
+    lost[k] = budget.last.integration_dissipation / budget.largest;
+  }
+  EXPECT_LT(lost[1], 0.5 * lost[0]);
+}
+
+TEST(EnergyBudget, ClosesForABodyThatSpins) {
+  Scene scene = Bar(0.01, 30);
+  scene.motions.clear();
+  InitialVelocity spin;
+  spin.angular_velocity = {0, 0, 4};
+  spin.center = {1.5, 0.5, 0.5};
+  spin.velocity = {1, 0, 0};
+  scene.initial_velocities.push_back(spin);
+  double kinetic = 0;
+  {
+    // A step so short that nothing has changed yet.
+    Scene first = scene;
+    first.timing.frames_per_second = 1e9;
+    kinetic = (*Simulation::Create(first, BarMesh(), {}))->Advance(StopFlag{})->kinetic_energy;
+  }
+  MustClose(scene, BarMesh(), kinetic);
+}
+
+TEST(EnergyBudget, ClosesForABarThatIsPulledApart) {
+  Scene scene = Bar(0.004, 60);
+  scene.gravity = Vec3{0, 0, -9.81};
+  scene.materials[0].tensile_strength = 1e4;
+  AddMotion(scene, "right").keyframes = {{0, {0, 0, 0}, 0}, {1, {3, 0, 0}, 0}};
+  const Budget budget = MustClose(scene, BarMesh());
+  EXPECT_GT(budget.last.fragments, 1);
+  EXPECT_GT(budget.last.fracture_energy, 0.01 * budget.largest);
+}
+
+}  // namespace
+}  // namespace cleave
