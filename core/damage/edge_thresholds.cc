@@ -31,7 +31,8 @@ std::vector<double> EdgeThresholds(const TetMesh& mesh, const Incidence& inciden
       const auto& nodes = incidence.edges[static_cast<size_t>(incidence.tet_edges[tet][k])];
       const EdgeDirections edge(nodes, mesh.rest_positions, mesh.rest_positions);
       const double cosine = edge.rest.dot(Eigen::Vector3d(strength.direction.data()));
-      factors[tet][k] = std::max(factors[tet][k], 1 + (strength.ratio - 1) * cosine * cosine);
+      factors[tet][k] =
+          std::max(factors[tet][k], DirectionalStrengthFactor(strength.ratio, cosine));
     }
   }
   std::vector<double> thresholds(incidence.edges.size(), std::numeric_limits<double>::infinity());

@@ -18,6 +18,13 @@ namespace cleave {
 std::vector<double> EdgeThresholds(const Incidence& incidence,
                                    std::span<const double> tet_strengths);
 
+// How many times the strength counts for an edge whose rest direction and the fibre make an angle
+// of this cosine; `ratio` R >= 1 is the strength along the fibre over that across it. Source:
+// method note, section 2.
+inline double DirectionalStrengthFactor(double ratio, double cosine) {
+  return 1 + (ratio - 1) * cosine * cosine;
+}
+
 // A tet whose strength along a direction exceeds that across it.
 struct DirectionalStrength {
   int32_t tet = 0;
@@ -25,9 +32,8 @@ struct DirectionalStrength {
   double ratio = 1;         // R >= 1
 };
 
-// The same, where in some tets strength depends on the edge's rest direction N: a tet's strength
-// counts 1 + (R - 1) (N . a)^2 times; of several records for a tet the largest counts. Source:
-// method note, section 2.
+// The same, where in some tets strength depends on the edge's rest direction; of several records
+// for a tet the largest factor counts.
 std::vector<double> EdgeThresholds(const TetMesh& mesh, const Incidence& incidence,
                                    std::span<const double> tet_strengths,
                                    std::span<const DirectionalStrength> directional);

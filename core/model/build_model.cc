@@ -13,7 +13,7 @@
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
 #include "core/model/elastic_term.h"
-#include "core/model/fibre_directions.h"
+#include "core/material/fibre_directions.h"
 #include "core/model/fibre_term.h"
 #include "core/model/impurities.h"
 #include "core/model/weakened_edges.h"

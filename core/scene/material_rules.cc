@@ -70,45 +70,46 @@ void CheckFibres(const std::string& field, const FibreFamily& family, double you
 
 }  // namespace
 
+void CheckMaterial(const std::string& field, const Material& material, Faults& faults,
+                   Checker& check) {
+  const auto at = [&](absl::string_view name) { return absl::StrCat(field, ".", name); };
+  check.Name(at("name"), material.name, false);
+  check.Above(at("youngs_modulus"), material.youngs_modulus, 0, limits::kMaxYoungsModulus);
+  check.Within(at("poisson_ratio"), material.poisson_ratio, 0, limits::kMaxPoissonRatio);
+  check.Above(at("density"), material.density, 0, limits::kMaxDensity);
+  if (check.List(at("regions"), material.regions.size())) {
+    for (size_t k = 0; k < material.regions.size(); ++k) {
+      check.Name(At(at("regions"), k), material.regions[k], true);
+    }
+  }
+  if (material.poisson_ratio > limits::kLockingPoissonRatio) {
+    faults.Warning(at("poisson_ratio"),
+                   absl::StrCat(material.poisson_ratio, " is above ", limits::kLockingPoissonRatio,
+                                ": linear tets lock, the body will be too stiff in bending"));
+  } else if (material.poisson_ratio < limits::kFloppyPoissonRatio) {
+    faults.Warning(at("poisson_ratio"),
+                   absl::StrCat(material.poisson_ratio, " is below ", limits::kFloppyPoissonRatio,
+                                ": crushed tets resist little"));
+  }
+  if (material.tensile_strength.has_value()) {
+    const double strength = *material.tensile_strength;
+    if (!(strength >= 0)) {
+      faults.Error(at("tensile_strength"), absl::StrCat(strength, " is outside [0, inf]"));
+    } else if (strength > 10 * material.youngs_modulus) {
+      faults.Warning(at("tensile_strength"),
+                     absl::StrCat(strength, " Pa is over 10 times Young's modulus: never breaks"));
+    }
+  }
+  if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) return;
+  for (size_t k = 0; k < material.fibres.size(); ++k)
+    CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);
+}
+
 void CheckMaterials(const Scene& scene, Faults& faults, Checker& check) {
   if (scene.materials.empty()) faults.Error("materials", "is empty; a body needs a material");
   if (!check.List("materials", scene.materials.size())) return;
-  for (size_t i = 0; i < scene.materials.size(); ++i) {
-    const Material& material = scene.materials[i];
-    const auto at = [&](absl::string_view field) { return At("materials", i, field); };
-    check.Name(at("name"), material.name, false);
-    check.Above(at("youngs_modulus"), material.youngs_modulus, 0, limits::kMaxYoungsModulus);
-    check.Within(at("poisson_ratio"), material.poisson_ratio, 0, limits::kMaxPoissonRatio);
-    check.Above(at("density"), material.density, 0, limits::kMaxDensity);
-    if (check.List(at("regions"), material.regions.size())) {
-      for (size_t k = 0; k < material.regions.size(); ++k) {
-        check.Name(At(at("regions"), k), material.regions[k], true);
-      }
-    }
-    if (material.poisson_ratio > limits::kLockingPoissonRatio) {
-      faults.Warning(
-          at("poisson_ratio"),
-          absl::StrCat(material.poisson_ratio, " is above ", limits::kLockingPoissonRatio,
-                       ": linear tets lock, the body will be too stiff in bending"));
-    } else if (material.poisson_ratio < limits::kFloppyPoissonRatio) {
-      faults.Warning(at("poisson_ratio"),
-                     absl::StrCat(material.poisson_ratio, " is below ", limits::kFloppyPoissonRatio,
-                                  ": crushed tets resist little"));
-    }
-    if (material.tensile_strength.has_value()) {
-      const double strength = *material.tensile_strength;
-      if (!(strength >= 0)) {
-        faults.Error(at("tensile_strength"), absl::StrCat(strength, " is outside [0, inf]"));
-      } else if (strength > 10 * material.youngs_modulus) {
-        faults.Warning(
-            at("tensile_strength"),
-            absl::StrCat(strength, " Pa is over 10 times Young's modulus: never breaks"));
-      }
-    }
-    if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) continue;
-    for (size_t k = 0; k < material.fibres.size(); ++k)
-      CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);
-  }
+  for (size_t i = 0; i < scene.materials.size(); ++i)
+    CheckMaterial(At("materials", i), scene.materials[i], faults, check);
 }
 
 void CheckFibreArrays(const Scene& scene, const TetMesh& mesh, Faults& faults) {

@@ -1,7 +1,8 @@
-#ifndef CLEAVE_CORE_MODEL_FIBRE_DIRECTIONS_H_
-#define CLEAVE_CORE_MODEL_FIBRE_DIRECTIONS_H_
+#ifndef CLEAVE_CORE_MATERIAL_FIBRE_DIRECTIONS_H_
+#define CLEAVE_CORE_MATERIAL_FIBRE_DIRECTIONS_H_
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,10 @@ namespace cleave {
 std::vector<Vec3> FibreDirections(const FibreDirection& direction, const TetMesh& mesh,
                                   std::span<const int32_t> tets);
 
+// The unit direction of fibres at a point at rest, m; nullopt for a direction that no point decides:
+// none, or one a tet. Precondition: the direction passed validation.
+std::optional<Vec3> FibreDirectionAt(const FibreDirection& direction, const Vec3& point);
+
 }  // namespace cleave
 
-#endif  // CLEAVE_CORE_MODEL_FIBRE_DIRECTIONS_H_
+#endif  // CLEAVE_CORE_MATERIAL_FIBRE_DIRECTIONS_H_

@@ -1,4 +1,4 @@
-#include "core/model/fibre_directions.h"
+#include "core/material/fibre_directions.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -25,39 +25,35 @@ Vector3d Centroid(const TetMesh& mesh, int32_t tet) {
 }
 
 struct DirectionAt {
-  const TetMesh& mesh;
-  int32_t tet;
+  Vector3d point;
 
-  Vector3d operator()(std::monostate) const { return Vector3d::UnitX(); }
-  Vector3d operator()(const ConstantDirection& constant) const {
+  std::optional<Vector3d> operator()(std::monostate) const { return std::nullopt; }
+  std::optional<Vector3d> operator()(const TetDirections&) const { return std::nullopt; }
+  std::optional<Vector3d> operator()(const ConstantDirection& constant) const {
     return Normalised(ToVector(constant.vector));
   }
-  Vector3d operator()(const CylindricalDirection& frame) const {
+  std::optional<Vector3d> operator()(const CylindricalDirection& frame) const {
     const Vector3d axis = Normalised(ToVector(frame.axis));
-    const Vector3d arm = Centroid(mesh, tet) - ToVector(frame.center);
+    const Vector3d arm = point - ToVector(frame.center);
     const Vector3d outward = arm - axis.dot(arm) * axis;
     const bool on_axis = !(outward.norm() > 1e-12 * arm.norm());
     const Vector3d out = on_axis ? axis.unitOrthogonal() : Normalised(outward);
     const Vector3d mixture = Normalised(ToVector(frame.mixture));
     return mixture[0] * out + mixture[1] * axis.cross(out) + mixture[2] * axis;
   }
-  Vector3d operator()(const TetDirections& directions) const {
-    return Normalised(ToVector(directions.vectors[static_cast<size_t>(tet)]));
-  }
   // Tangents have no sign, so their dyads are averaged and the strongest direction is taken.
-  Vector3d operator()(const CurveDirections& directions) const {
-    const Vector3d at = Centroid(mesh, tet);
+  std::optional<Vector3d> operator()(const CurveDirections& directions) const {
     double nearest = INFINITY;  // squared
-    ForEachSegment(directions, at, [&](const Vector3d&, double squared, double) {
+    ForEachSegment(directions, point, [&](const Vector3d&, double squared, double) {
       nearest = std::min(nearest, squared);
     });
     Eigen::Matrix3d dyads = Eigen::Matrix3d::Zero();
-    ForEachSegment(directions, at, [&](const Vector3d& tangent, double squared, double length) {
+    ForEachSegment(directions, point, [&](const Vector3d& tangent, double squared, double length) {
       // Relative to the nearest, so that weights are finite on a curve too.
       const double closeness = squared > 0 ? nearest / squared : 1;
       dyads += length * closeness * closeness * tangent * tangent.transpose();
     });
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(dyads).eigenvectors().col(2);
+    return Vector3d(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(dyads).eigenvectors().col(2));
   }
 
   // visit(unit tangent, squared distance of `at`, length of the segment)
@@ -83,13 +79,23 @@ struct DirectionAt {
 std::vector<Vec3> FibreDirections(const FibreDirection& direction, const TetMesh& mesh,
                                   std::span<const int32_t> tets) {
   std::vector<Vec3> directions(tets.size());
+  const auto* per_tet = std::get_if<TetDirections>(&direction);
   ParallelFor(static_cast<int64_t>(tets.size()), 256, [&](int64_t begin, int64_t end) {
     for (auto k = static_cast<size_t>(begin); k < static_cast<size_t>(end); ++k) {
-      const Vector3d unit = std::visit(DirectionAt{mesh, tets[k]}, direction);
+      const Vector3d unit =
+          per_tet != nullptr ? Normalised(ToVector(per_tet->vectors[static_cast<size_t>(tets[k])]))
+                             : std::visit(DirectionAt{Centroid(mesh, tets[k])}, direction)
+                                   .value_or(Vector3d::UnitX());
       directions[k] = {unit[0], unit[1], unit[2]};
     }
   });
   return directions;
+}
+
+std::optional<Vec3> FibreDirectionAt(const FibreDirection& direction, const Vec3& point) {
+  const std::optional<Vector3d> unit = std::visit(DirectionAt{ToVector(point)}, direction);
+  if (!unit.has_value()) return std::nullopt;
+  return Vec3{(*unit)[0], (*unit)[1], (*unit)[2]};
 }
 
 }  // namespace cleave

@@ -1,4 +1,4 @@
-#include "core/model/fibre_directions.h"
+#include "core/material/fibre_directions.h"
 
 #include <gtest/gtest.h>
 
@@ -81,6 +81,16 @@ TEST(FibreDirections, FollowACurveWhicheverWayItRuns) {
         forth[tet][0] * back[tet][0] + forth[tet][1] * back[tet][1] + forth[tet][2] * back[tet][2];
     EXPECT_NEAR(std::abs(same), 1, 1e-10);
   }
+}
+
+TEST(FibreDirections, AtAPointAreThoseOfATetThere) {
+  const TetMesh mesh = KuhnBox({1, 1, 1}, {1, 1, 1}, {1, 2, 3});
+  const FibreDirection around = CylindricalDirection{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+  const Vec3 centroid = Centroid(mesh, 0);
+  EXPECT_EQ(FibreDirectionAt(around, centroid), OnAllTets(around, mesh)[0]);
+  EXPECT_EQ(FibreDirectionAt(ConstantDirection{{0, 0, 3}}, centroid), (Vec3{0, 0, 1}));
+  EXPECT_EQ(FibreDirectionAt(TetDirections{{{1, 0, 0}}}, centroid), std::nullopt);
+  EXPECT_EQ(FibreDirectionAt(std::monostate{}, centroid), std::nullopt);
 }
 
 }  // namespace
