@@ -27,6 +27,7 @@ ARROWS = {
     "core/material": ["core/material", "core/scene", "core/mesh", "Eigen"],
     "core/damage": ["core/damage", "core/mesh", "core/scene", "Eigen"],
     "core/model": ["core/model", "core/damage", "core/material", "core/scene", "core/mesh", "Eigen"],
+    "core/probe": ["core/probe", "core/material", "core/damage", "core/scene", "core/mesh", "Eigen"],
     "core/solver": ["core/solver", "core/model", "core/damage", "core/material", "core/scene",
                     "core/mesh", "Eigen", "tbb", "immintrin.h"],
     "core/simulation": ["core/simulation", "core/solver", "core/model", "core/damage",

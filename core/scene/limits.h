@@ -40,6 +40,13 @@ inline constexpr int32_t kMaxPasses = 100'000;
 
 inline constexpr int32_t kMaxIntervalFrames = 1'000'000;
 
+// A probe answers within a second and a message: 0.75 MB of tangents, 1 MB of curves.
+inline constexpr int64_t kMaxProbeGradients = 1'000;
+inline constexpr int64_t kMaxPullDirections = 16;
+inline constexpr int32_t kMaxProbeSamples = 1'000;
+inline constexpr double kMaxProbeStretch = 1'000;  // St. Venant-Kirchhoff grows with its 4th power
+inline constexpr double kMaxProbeStrain = 100;
+
 // Enough for any scene drawn by a person. Each selector costs a pass over the nodes.
 inline constexpr int64_t kMaxListItems = 1'000;
 inline constexpr int64_t kMaxKeyframes = 1'000'000;
