@@ -1,6 +1,7 @@
 #include "core/scene/material_rules.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -68,6 +69,31 @@ void CheckFibres(const std::string& field, const FibreFamily& family, double you
   std::visit(DirectionRules{field, faults, check}, family.direction);
 }
 
+void CheckPlasticity(const std::string& field, const Material& material,
+                     const Plasticity& plasticity, Faults& faults, Checker& check) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  check.Above(field + ".yield_stress", plasticity.yield_stress, 0, limits::kMaxYoungsModulus);
+  check.Within(field + ".hardening", plasticity.hardening, 0, limits::kMaxYoungsModulus);
+  check.Above(field + ".flow_rate", plasticity.flow_rate, 0, kInfinity);
+  if (plasticity.failure_strain.has_value()) {
+    check.Above(field + ".failure_strain", *plasticity.failure_strain, 0, kInfinity);
+    if (!material.tensile_strength.has_value())
+      faults.Error(field + ".failure_strain",
+                   "needs a tensile_strength: without one the material never breaks");
+  }
+  const bool fails_by_strain = plasticity.failure_strain.value_or(kInfinity) < kInfinity;
+  if (!material.tensile_strength.has_value() || !(*material.tensile_strength < kInfinity)) return;
+  if (plasticity.yield_stress >= *material.tensile_strength) {
+    faults.Warning(field + ".yield_stress",
+                   absl::StrCat(plasticity.yield_stress, " Pa is not below the tensile strength, ",
+                                *material.tensile_strength, " Pa: breaks before it yields"));
+  } else if (plasticity.hardening == 0 && !fails_by_strain) {
+    faults.Warning(field + ".hardening",
+                   "is 0 without a failure_strain: stress stays at yield, below the strength, and "
+                   "slow pulling breaks nothing");
+  }
+}
+
 }  // namespace
 
 void CheckMaterial(const std::string& field, const Material& material, Faults& faults,
@@ -100,6 +126,8 @@ void CheckMaterial(const std::string& field, const Material& material, Faults& f
                      absl::StrCat(strength, " Pa is over 10 times Young's modulus: never breaks"));
     }
   }
+  if (material.plasticity.has_value())
+    CheckPlasticity(at("plasticity"), material, *material.plasticity, faults, check);
   if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) return;
   for (size_t k = 0; k < material.fibres.size(); ++k)
     CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -75,6 +76,17 @@ struct FibreFamily {
   double strength_ratio = 1;  // edges along the fibre are this much stronger than those across
 };
 
+// How a ductile solid flows once it yields (method note, section 6): at constant volume, with
+// isotropic hardening.
+struct Plasticity {
+  double yield_stress = 0;  // Pa, of von Mises
+  double hardening = 0;     // Pa, what yield stress gains with equivalent plastic strain
+  // 1/s: overstress decays as exp(-flow_rate t); infinite: at once.
+  double flow_rate = std::numeric_limits<double>::infinity();
+  // Equivalent plastic strain at which edges break, below their strength too; absent: none.
+  std::optional<double> failure_strain = std::nullopt;
+};
+
 // A material and the regions that it fills. Later materials win where regions overlap.
 struct Material {
   std::string name;
@@ -85,6 +97,7 @@ struct Material {
   double density = 0;                      // kg/m^3
   std::optional<double> tensile_strength;  // Pa, threshold of edge stress; absent: never breaks
   std::vector<FibreFamily> fibres;
+  std::optional<Plasticity> plasticity;  // absent: elastic until it breaks
 };
 
 struct BoxSelector {

@@ -51,6 +51,14 @@ void PutFibres(const FibreFamily& family, ByteWriter& out) {
   }
 }
 
+void PutPlasticity(const Plasticity& plasticity, ByteWriter& out) {
+  out.Put(plasticity.yield_stress);
+  out.Put(plasticity.hardening);
+  out.Put(plasticity.flow_rate);
+  out.Put<uint8_t>(plasticity.failure_strain.has_value());
+  out.Put(plasticity.failure_strain.value_or(0));
+}
+
 void PutImpurities(const Impurities& impurities, ByteWriter& out) {
   out.Put(static_cast<uint32_t>(impurities.effect));
   out.Put(static_cast<uint32_t>(impurities.model));
@@ -99,6 +107,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     out.Put(material.tensile_strength.value_or(0));
     out.Put<uint64_t>(material.fibres.size());
     for (const FibreFamily& family : material.fibres) PutFibres(family, out);
+    out.Put<uint8_t>(material.plasticity.has_value());
+    if (material.plasticity) PutPlasticity(*material.plasticity, out);
   }
   out.Put<uint64_t>(scene.node_sets.size());
   for (const NodeSet& set : scene.node_sets) {

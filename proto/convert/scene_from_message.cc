@@ -180,6 +180,14 @@ class Converter {
       family.direction = Direction(absl::StrCat(field, ".fibres[", i, "]"), from);
       if (from.has_strength_ratio()) family.strength_ratio = from.strength_ratio();
     }
+    if (message.has_plasticity()) {
+      const v1::Plasticity& from = message.plasticity();
+      Plasticity& plasticity = material.plasticity.emplace();
+      plasticity.yield_stress = from.yield_stress();
+      plasticity.hardening = from.hardening();
+      if (from.has_flow_rate()) plasticity.flow_rate = from.flow_rate();
+      if (from.has_failure_strain()) plasticity.failure_strain = from.failure_strain();
+    }
     return material;
   }
 

@@ -219,6 +219,15 @@ v1::Scene MessageFromScene(const Scene& scene) {
       std::visit(WriteDirection{fibres}, family.direction);
       fibres->set_strength_ratio(family.strength_ratio);
     }
+    if (material.plasticity.has_value()) {
+      v1::Plasticity* plasticity = to->mutable_plasticity();
+      plasticity->set_yield_stress(material.plasticity->yield_stress);
+      plasticity->set_hardening(material.plasticity->hardening);
+      plasticity->set_flow_rate(material.plasticity->flow_rate);
+      if (material.plasticity->failure_strain.has_value()) {
+        plasticity->set_failure_strain(*material.plasticity->failure_strain);
+      }
+    }
   }
   for (const NodeSet& set : scene.node_sets) {
     v1::NodeSet* to = message.add_node_sets();

@@ -96,6 +96,25 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
       {"impurities.steepness", [](Scene& s) { s.impurities = Impurities{.steepness = 0}; }},
       {"impurities.pure_offset", [](Scene& s) { s.impurities = Impurities{.pure_offset = 0}; }},
       {"impurities.degree_weight", [](Scene& s) { s.impurities = Impurities{.degree_weight = 2}; }},
+      {"materials[0].plasticity.yield_stress",
+       [](Scene& s) { s.materials[0].plasticity = Plasticity{.yield_stress = 0}; }},
+      {"materials[0].plasticity.hardening",
+       [](Scene& s) {
+         s.materials[0].plasticity = Plasticity{.yield_stress = 1e5, .hardening = kInf};
+       }},
+      {"materials[0].plasticity.flow_rate",
+       [](Scene& s) {
+         s.materials[0].plasticity = Plasticity{.yield_stress = 1e5, .flow_rate = 0};
+       }},
+      {"materials[0].plasticity.failure_strain",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 2e5;
+         s.materials[0].plasticity = Plasticity{.yield_stress = 1e5, .failure_strain = kNan};
+       }},
+      {"materials[0].plasticity.failure_strain",
+       [](Scene& s) {
+         s.materials[0].plasticity = Plasticity{.yield_stress = 1e5, .failure_strain = 0.1};
+       }},
       {"materials[0].fibres[0]", fibres(std::monostate())},
       {"materials[0].fibres", [](Scene& s) { s.materials[0].fibres.resize(5); }},
       {"materials[0].fibres[0].stiffness",
@@ -234,6 +253,28 @@ TEST(ValidateScene, WarnsWhereTheResultWillBePoor) {
   const Faults faults = ValidateScene(scene);
   EXPECT_TRUE(faults.ok());
   EXPECT_EQ(faults.warning_count(), 5);
+}
+
+TEST(ValidateScene, WarnsWhereDuctilityChangesNothing) {
+  Scene scene = GoodScene();
+  scene.materials[0].tensile_strength = 2e5;
+  Plasticity& plasticity = scene.materials[0].plasticity.emplace();
+  const auto warnings = [&] {
+    const Faults faults = ValidateScene(scene);
+    EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+    return faults.warning_count();
+  };
+  plasticity = {.yield_stress = 2e5, .hardening = 1e5};
+  EXPECT_EQ(warnings(), 1);  // breaks before it yields
+  plasticity = {.yield_stress = 1e5};
+  EXPECT_EQ(warnings(), 1);  // yields for ever
+  plasticity.failure_strain = 0.3;
+  EXPECT_EQ(warnings(), 0);
+  plasticity = {.yield_stress = 1e5, .hardening = 1e5};
+  EXPECT_EQ(warnings(), 0);
+  plasticity = {.yield_stress = 1e5};
+  scene.materials[0].tensile_strength.reset();
+  EXPECT_EQ(warnings(), 0);  // nothing was to break
 }
 
 TEST(ValidateScene, AcceptsInfiniteStrengthAndHalfSpaces) {

@@ -60,6 +60,12 @@ constexpr char kEveryField[] = R"pb(
       }
       strength_ratio: 3
     }
+    plasticity {
+      yield_stress: 1e6
+      hardening: 2e6
+      flow_rate: 50
+      failure_strain: 0.25
+    }
   }
   node_sets {
     name: "grip"
