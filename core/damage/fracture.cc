@@ -31,8 +31,8 @@ double SixVolumes(const std::array<int32_t, 4>& nodes, std::span<const Vec3> pos
 }  // namespace
 
 EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
-                           Broadcast<double> thresholds, const FractureSettings& settings)
-    : mesh_(mesh), incidence_(incidence), thresholds_(thresholds), settings_(settings) {
+                           const EdgeStrengths& strengths, const FractureSettings& settings)
+    : mesh_(mesh), incidence_(incidence), strengths_(strengths), settings_(settings) {
   const auto tets = static_cast<size_t>(mesh.tet_count());
   const auto edges = static_cast<size_t>(incidence.edge_count());
   rest_volumes_.resize(tets);
@@ -41,27 +41,33 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
   broken_.assign(edges, 0);
   masks_.assign(tets, 0);
   factors_.assign(tets, 1.0);
-  upright_.assign(tets, 0);
+  loads_.assign(tets, kNone);
   ratios_.assign(edges, 0.0);
-  min_threshold_ = std::numeric_limits<double>::infinity();
+  min_threshold_ = kUnbreakable;
   for (int32_t edge = 0; edge < static_cast<int32_t>(edges); ++edge) {
-    const double threshold = thresholds_[edge];
-    if (threshold == 0) {
+    if (strengths_.tensile[edge] == 0) {
       pending_.push_back(edge);
     } else {
-      min_threshold_ = std::min(min_threshold_, threshold);
+      min_threshold_ = std::min(min_threshold_, Weakest(edge));
     }
   }
   BreakPending({}, {});
 }
 
 void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
-  for (const int32_t edge : edges) min_threshold_ = std::min(min_threshold_, thresholds_[edge]);
+  for (const int32_t edge : edges) {
+    if (broken_[static_cast<size_t>(edge)] == 0)
+      min_threshold_ = std::min(min_threshold_, Weakest(edge));
+  }
+}
+
+double EdgeFracture::Weakest(int32_t edge) const {
+  return strengths_.kappa[edge] * std::min(strengths_.tensile[edge], strengths_.compressive[edge]);
 }
 
 PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effective_stress) {
   PassResult result;
-  if (min_threshold_ == std::numeric_limits<double>::infinity()) return result;
+  if (min_threshold_ == kUnbreakable) return result;
 
   // No edge of a tet sees more than the norm of its stress.
   const double stress_bound = WeighTets(positions, effective_stress);
@@ -77,8 +83,7 @@ PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effec
     for (int64_t block = begin; block < end; ++block) {
       BlockMax max{0, -1};
       for (int64_t edge = block * kBlock; edge < std::min(edges, (block + 1) * kBlock); ++edge) {
-        const double stress = EdgeStress(static_cast<int32_t>(edge), positions, effective_stress);
-        const double ratio = stress > 0 ? stress / thresholds_[edge] : 0;
+        const double ratio = RatioOf(static_cast<int32_t>(edge), positions, effective_stress);
         ratios_[static_cast<size_t>(edge)] = ratio;
         if (ratio > max.value) max = {ratio, static_cast<int32_t>(edge)};
       }
@@ -103,14 +108,17 @@ double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective
   const auto tets = static_cast<int64_t>(factors_.size());
   const int64_t blocks = (tets + kBlock - 1) / kBlock;
   block_max_.resize(static_cast<size_t>(blocks));
+  const double hot_squared = min_threshold_ * min_threshold_;
   ParallelFor(blocks, 1, [&](int64_t begin, int64_t end) {
     for (int64_t block = begin; block < end; ++block) {
       double max_squared = 0;
       for (int64_t tet = block * kBlock; tet < std::min(tets, (block + 1) * kBlock); ++tet) {
         const auto t = static_cast<size_t>(tet);
-        upright_[t] = factors_[t] > 0 && SixVolumes(mesh_.tets[t], positions) > 0;
-        if (upright_[t] != 0)
-          max_squared = std::max(max_squared, effective_stress[t].squaredNorm());
+        loads_[t] = kNone;
+        if (!(factors_[t] > 0 && SixVolumes(mesh_.tets[t], positions) > 0)) continue;
+        const double squared = effective_stress[t].squaredNorm();
+        loads_[t] = squared >= hot_squared ? kHot : kUpright;
+        max_squared = std::max(max_squared, squared);
       }
       block_max_[static_cast<size_t>(block)] = {max_squared, 0};
     }
@@ -120,25 +128,44 @@ double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective
   return std::sqrt(max_squared);
 }
 
-double EdgeFracture::EdgeStress(int32_t edge, std::span<const Vec3> positions,
-                                Stress effective_stress) const {
-  if (broken_[static_cast<size_t>(edge)] != 0) return 0;
+EdgeFracture::EdgeLoad EdgeFracture::LoadOf(int32_t edge, std::span<const Vec3> positions,
+                                            Stress effective_stress) const {
   const EdgeDirections directions(incidence_.edges[static_cast<size_t>(edge)], positions,
                                   mesh_.rest_positions);
   double weighted = 0;
   double volume = 0;
-  double max = 0;
+  double max = -kUnbreakable;
+  double min = kUnbreakable;
   for (const int32_t tet : incidence_.edge_tets[edge]) {
     const auto t = static_cast<size_t>(tet);
     if (!(factors_[t] > 0)) continue;
     volume += rest_volumes_[t];
-    if (upright_[t] == 0) continue;
-    const double stress = directions.Project(effective_stress[t]);
+    const double stress = loads_[t] == kNone ? 0 : directions.Project(effective_stress[t]);
     weighted += rest_volumes_[t] * stress;
     max = std::max(max, stress);
+    min = std::min(min, stress);
   }
-  if (settings_.aggregation == StressAggregation::kMax) return max;
-  return volume > 0 ? weighted / volume : 0;
+  if (!(volume > 0)) return {0, 0};
+  if (settings_.aggregation == StressAggregation::kMax) return {max, -min};
+  return {weighted / volume, -weighted / volume};
+}
+
+double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
+                             Stress effective_stress) const {
+  if (broken_[static_cast<size_t>(edge)] != 0) return 0;
+  // Neither the mean nor the largest exceeds every tet's.
+  const std::span<const int32_t> tets = incidence_.edge_tets[edge];
+  const bool hot = std::any_of(tets.begin(), tets.end(), [&](int32_t tet) {
+    return loads_[static_cast<size_t>(tet)] == kHot;
+  });
+  if (!hot) return 0;
+  const EdgeLoad load = LoadOf(edge, positions, effective_stress);
+  const double kappa = strengths_.kappa[edge];
+  double ratio = 0;
+  if (load.tension > 0) ratio = load.tension / (strengths_.tensile[edge] * kappa);
+  if (load.compression > 0)
+    ratio = std::max(ratio, load.compression / (strengths_.compressive[edge] * kappa));
+  return ratio;
 }
 
 void EdgeFracture::EdgeStresses(std::span<const Vec3> positions, Stress effective_stress,
@@ -146,8 +173,9 @@ void EdgeFracture::EdgeStresses(std::span<const Vec3> positions, Stress effectiv
   WeighTets(positions, effective_stress);
   ParallelFor(static_cast<int64_t>(stresses.size()), kBlock, [&](int64_t begin, int64_t end) {
     for (int64_t edge = begin; edge < end; ++edge) {
+      const bool broken = broken_[static_cast<size_t>(edge)] != 0;
       stresses[static_cast<size_t>(edge)] =
-          EdgeStress(static_cast<int32_t>(edge), positions, effective_stress);
+          broken ? 0 : LoadOf(static_cast<int32_t>(edge), positions, effective_stress).tension;
     }
   });
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,21 @@ namespace cleave {
 // A tet whose damage factor falls below this carries nothing worth solving for: it is dead.
 inline constexpr double kDeadFactor = 1e-3;
 
+inline constexpr double kUnbreakable = std::numeric_limits<double>::infinity();  // Pa
+inline constexpr double kFullStrength = 1;
+
+// What edges withstand: thresholds times kappa. A record an edge or one for all each.
+struct EdgeStrengths {
+  // The tensile thresholds alone are strengths.
+  EdgeStrengths(Broadcast<double> tensile_thresholds)  // NOLINT(google-explicit-constructor)
+      : tensile(tensile_thresholds) {}
+
+  Broadcast<double> tensile;  // Pa; infinite never breaks, 0 is cut at once; not negative or NaN
+  // Pa, of compressive stress, > 0; infinite never breaks.
+  Broadcast<double> compressive = Broadcast<double>::Uniform(kUnbreakable);
+  Broadcast<double> kappa = Broadcast<double>::Uniform(kFullStrength);  // > 0, of impurities
+};
+
 struct FractureSettings {
   double simultaneity = 0.9;  // edges at this share of their component's worst ratio break with it
   StressAggregation aggregation = StressAggregation::kMean;
@@ -33,8 +49,9 @@ struct ChangedTet {
 
 // What one break pass did. The spans stay valid until the next call on the same EdgeFracture.
 struct PassResult {
-  // Largest failure ratio over live edges, all edges unbroken so far. Below 1 nothing broke; it is
-  // then only an upper bound when no tet's stress reached the smallest threshold.
+  // Largest failure ratio over live edges, all edges unbroken so far. Below 1 nothing broke, and it
+  // is then the largest of those at a tet whose stress reached the smallest threshold; an upper
+  // bound where there is no such tet.
   double max_ratio = 0;
   int32_t max_edge = -1;  // an edge of that ratio, the lowest id; -1 when only the bound is known
   std::span<const int32_t> broken_edges;     // newly broken, ascending, orphans included
@@ -47,8 +64,9 @@ struct PassResult {
 // An edge's stress is d^T P N / |d| (Pa per rest area), d its current and N its unit rest vector, P
 // the undamaged first Piola-Kirchhoff stress of a tet, taken over the edge's live tets; a tet with
 // J <= 0 counts as stress 0 because it would read compression as tension. An edge fails when that
-// reaches its threshold. A tet that loses edges keeps the share of its stress that the unbroken
-// ones carry, frozen from then on; it dies once its vertices are separated.
+// reaches its tensile threshold, or minus its compressive one. A tet that loses edges keeps the
+// share of its stress that the unbroken ones carry, frozen from then on; it dies once its vertices
+// are separated.
 //
 // Damage factors never rise and broken edges never mend. A live edge is an unbroken one: the orphan
 // rule breaks an edge when its last live tet dies.
@@ -57,11 +75,10 @@ struct PassResult {
 // threads. No call but the constructor and Restore allocates once its scratch has grown.
 class EdgeFracture {
  public:
-  // `mesh`, `incidence` and what `thresholds` points to must outlive this object. Rest volumes are
-  // positive. Thresholds are in Pa, a record an edge or one for all; infinite never breaks, 0 is
-  // cut here and now; never negative or NaN. They change later only as LowerThresholds says.
-  // simultaneity is in (0, 1].
-  EdgeFracture(const TetMesh& mesh, const Incidence& incidence, Broadcast<double> thresholds,
+  // `mesh`, `incidence` and what `strengths` point to must outlive this object. Rest volumes are
+  // positive. A tensile threshold of 0 is cut here and now. Strengths change later only as
+  // LowerThresholds says. simultaneity is in (0, 1].
+  EdgeFracture(const TetMesh& mesh, const Incidence& incidence, const EdgeStrengths& strengths,
                const FractureSettings& settings);
 
   // One break pass: finds failure ratios; in each connected component of the live mesh breaks every
@@ -72,11 +89,12 @@ class EdgeFracture {
   PassResult BreakPass(std::span<const Vec3> positions,
                        std::span<const Eigen::Matrix3d> effective_stress);
 
-  // To be called when the thresholds of these edges have fallen, or any have risen again with a
+  // To be called when the strengths of these edges have fallen, or any have risen again with a
   // Restore: they count from the next pass on.
   void LowerThresholds(std::span<const int32_t> edges);
 
-  // The aggregated stress of every edge, Pa; 0 for broken edges. `stresses` has an edge each.
+  // The aggregated stress of every edge, Pa, negative in compression; where the largest counts,
+  // that of tension. 0 for broken edges. `stresses` has an edge each.
   void EdgeStresses(std::span<const Vec3> positions,
                     std::span<const Eigen::Matrix3d> effective_stress, std::span<double> stresses);
 
@@ -98,9 +116,25 @@ class EdgeFracture {
  private:
   using Stress = std::span<const Eigen::Matrix3d>;
 
-  // Sets `upright_`; returns the largest Frobenius norm of an upright tet's stress.
+  // The aggregated stress of an edge as tension and as compression, Pa. They are of opposite sign
+  // but where the largest stress of its tets counts.
+  struct EdgeLoad {
+    double tension, compression;
+  };
+  // What a tet's stress counts for.
+  enum TetLoad : uint8_t {
+    kNone,     // dead, or J <= 0
+    kUpright,  // live
+    kHot,      // live, and its stress reaches the smallest threshold: its edges may fail
+  };
+
+  // The smallest strength of an edge, Pa.
+  double Weakest(int32_t edge) const;
+  // Sets `loads_`; returns the largest Frobenius norm of an upright tet's stress.
   double WeighTets(std::span<const Vec3> positions, Stress effective_stress);
-  double EdgeStress(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
+  EdgeLoad LoadOf(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
+  // The failure ratio of an edge.
+  double RatioOf(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
   void CollectFailing();
   // Breaks the edges in `pending_`, weakens their tets and applies the rules to a fixed point.
   void BreakPending(std::span<const Vec3> positions, Stress effective_stress);
@@ -113,7 +147,7 @@ class EdgeFracture {
 
   const TetMesh& mesh_;
   const Incidence& incidence_;
-  const Broadcast<double> thresholds_;
+  const EdgeStrengths strengths_;
   const FractureSettings settings_;
   double min_threshold_ = 0;          // Pa, at most the smallest threshold
   std::vector<double> rest_volumes_;  // m^3, a tet each
@@ -126,8 +160,8 @@ class EdgeFracture {
   bool components_fresh_ = false;
 
   // Scratch of a pass.
-  std::vector<uint8_t> upright_;  // a tet each: live and J > 0
-  std::vector<double> ratios_;    // an edge each
+  std::vector<TetLoad> loads_;  // a tet each
+  std::vector<double> ratios_;  // an edge each
   struct BlockMax {
     double value;
     int32_t item;

@@ -93,7 +93,7 @@ double EdgeFracture::UnbrokenShare(int32_t tet, std::span<const Vec3> positions,
   for (size_t k = 0; k < 6; ++k) {
     const bool is_unbroken = (masks_[t] >> k & 1) == 0;
     unbroken_edges += is_unbroken ? 1 : 0;
-    if (upright_[t] == 0) continue;
+    if (loads_[t] == kNone) continue;
     const auto edge = static_cast<size_t>(incidence_.tet_edges[t][k]);
     const EdgeDirections directions(incidence_.edges[edge], positions, mesh_.rest_positions);
     const double stress = std::abs(directions.Project(effective_stress[t]));

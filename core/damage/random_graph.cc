@@ -36,22 +36,21 @@ double BondStrength::operator()(double potency_i, double potency_j, double share
 }
 
 RandomGraph::RandomGraph(const Incidence& incidence, const RandomGraphSettings& settings,
-                         std::span<const double> potencies, Broadcast<double> thresholds,
-                         std::span<const double> draws, std::span<const int32_t> deal)
+                         std::span<const double> potencies, std::span<const double> draws,
+                         std::span<const int32_t> deal)
     : incidence_(incidence),
       strength_(settings),
       upgrades_(settings.effect == ImpurityEffect::kUpgradation),
       follows_degrees_(settings.follows_degrees),
       potencies_(potencies),
-      pure_thresholds_(thresholds),
       draws_(draws),
       deal_(deal),
       degrees_(settings.follows_degrees ? potencies.size() : 0),
-      thresholds_(incidence.edges.size()) {
+      factors_(incidence.edges.size()) {
   Reset({});
 }
 
-double RandomGraph::ThresholdOf(int32_t edge) const {
+double RandomGraph::FactorOf(int32_t edge) const {
   const int32_t bond = deal_.empty() ? edge : deal_[static_cast<size_t>(edge)];
   const auto [i, j] = incidence_.edges[static_cast<size_t>(bond)];
   const auto share = [&](int32_t node) {
@@ -62,12 +61,11 @@ double RandomGraph::ThresholdOf(int32_t edge) const {
   };
   const double kappa = strength_(potencies_[static_cast<size_t>(i)],
                                  potencies_[static_cast<size_t>(j)], share(i), share(j));
-  const double pure = pure_thresholds_[edge];
-  if (draws_.empty()) return pure * kappa;
+  if (draws_.empty()) return kappa;
   const double draw = draws_[static_cast<size_t>(edge)];
   const double extreme = strength_.extreme();
   const bool is_extreme = upgrades_ ? draw < (kappa - 1) / (extreme - 1) : draw < 1 - kappa;
-  return pure * (is_extreme ? extreme : 1);
+  return is_extreme ? extreme : 1;
 }
 
 std::span<const int32_t> RandomGraph::Break(std::span<const int32_t> edges) {
@@ -82,7 +80,7 @@ std::span<const int32_t> RandomGraph::Break(std::span<const int32_t> edges) {
   }
   std::sort(changed_.begin(), changed_.end());
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-  for (const int32_t edge : changed_) thresholds_[static_cast<size_t>(edge)] = ThresholdOf(edge);
+  for (const int32_t edge : changed_) factors_[static_cast<size_t>(edge)] = FactorOf(edge);
   return changed_;
 }
 
@@ -95,13 +93,12 @@ void RandomGraph::Reset(std::span<const uint8_t> broken) {
   }
   ParallelFor(incidence_.edge_count(), 1024, [&](int64_t begin, int64_t end) {
     for (int64_t edge = begin; edge < end; ++edge)
-      thresholds_[static_cast<size_t>(edge)] = ThresholdOf(static_cast<int32_t>(edge));
+      factors_[static_cast<size_t>(edge)] = FactorOf(static_cast<int32_t>(edge));
   });
 }
 
 int64_t RandomGraph::bytes() const {
-  return static_cast<int64_t>(degrees_.size() * sizeof(int32_t) +
-                              thresholds_.size() * sizeof(double));
+  return static_cast<int64_t>(degrees_.size() * sizeof(int32_t) + factors_.size() * sizeof(double));
 }
 
 }  // namespace cleave

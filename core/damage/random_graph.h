@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "core/base/broadcast.h"
 #include "core/mesh/incidence.h"
 #include "core/scene/scene.h"
 
@@ -42,25 +41,26 @@ class BondStrength {
   double extreme_ = 1;
 };
 
-// The thresholds of edges in a body with impurities: a graph whose bonds hold with a probability
-// that follows from the potency of their nodes and from how many bonds those have left. Potencies
-// and degrees are all the state there is (a Markov random field on the nodes), so a node's potency
-// touches the thresholds of its own edges only. Not thread-safe.
+// What the thresholds of edges count in a body with impurities: a graph whose bonds hold with a
+// probability that follows from the potency of their nodes and from how many bonds those have left.
+// Potencies and degrees are all the state there is (a Markov random field on the nodes), so a
+// node's potency touches the strengths of its own edges only. Not thread-safe.
 class RandomGraph {
  public:
-  // `potencies` has a node each, `thresholds` (Pa) those of the pure body. `draws` is empty, then
-  // thresholds are the expected ones; or has a number in (0, 1) for every edge, then each edge has
-  // one of two strengths by its draw, for good unless its nodes lose bonds. `deal` is empty, or
-  // names for every edge the one whose nodes count for it; degrees then must not count. What the
-  // spans and `incidence` refer to must outlive this object.
+  // `potencies` has a node each. `draws` is empty, then strengths are the expected ones; or has a
+  // number in (0, 1) for every edge, then each edge has one of two strengths by its draw, for good
+  // unless its nodes lose bonds. `deal` is empty, or names for every edge the one whose nodes count
+  // for it; degrees then must not count. What the spans and `incidence` refer to must outlive this
+  // object.
   RandomGraph(const Incidence& incidence, const RandomGraphSettings& settings,
-              std::span<const double> potencies, Broadcast<double> thresholds,
-              std::span<const double> draws, std::span<const int32_t> deal);
+              std::span<const double> potencies, std::span<const double> draws,
+              std::span<const int32_t> deal);
 
-  // Pa, an edge each; stays where it is in memory.
-  std::span<const double> thresholds() const { return thresholds_; }
+  // kappa: how many times the pure body's threshold every edge has, > 0, an edge each; stays where
+  // it is in memory.
+  std::span<const double> factors() const { return factors_; }
 
-  // Takes away bonds; returns the edges whose thresholds fell, valid until the next call.
+  // Takes away bonds; returns the edges whose factors fell, valid until the next call.
   std::span<const int32_t> Break(std::span<const int32_t> edges);
   // Starts over from a set of broken edges: nonzero for a broken one, an edge each.
   void Reset(std::span<const uint8_t> broken);
@@ -68,18 +68,17 @@ class RandomGraph {
   int64_t bytes() const;
 
  private:
-  double ThresholdOf(int32_t edge) const;
+  double FactorOf(int32_t edge) const;
 
   const Incidence& incidence_;
   const BondStrength strength_;
   const bool upgrades_;
   const bool follows_degrees_;
   const std::span<const double> potencies_;
-  const Broadcast<double> pure_thresholds_;
   const std::span<const double> draws_;
   const std::span<const int32_t> deal_;
   std::vector<int32_t> degrees_;  // bonds left, a node each; empty unless they count
-  std::vector<double> thresholds_;
+  std::vector<double> factors_;
   std::vector<int32_t> changed_;
 };
 

@@ -213,20 +213,35 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
   // Fracture, where something can break.
   if (CanBreak(scene)) {
     FracturePart& part = model.fracture.emplace();
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    if (scene.materials.size() == 1 && directional.empty() && scene.weakenings.empty()) {
-      part.edge_thresholds = {*scene.materials[0].tensile_strength};
-    } else {
-      std::vector<double> strengths(material_of.size());
-      for (size_t tet = 0; tet < strengths.size(); ++tet) {
+    const auto strengths = [&](std::optional<double> Material::*strength) {
+      std::vector<double> of_tet(material_of.size());
+      for (size_t tet = 0; tet < of_tet.size(); ++tet) {
         const Material& material = scene.materials[static_cast<size_t>(material_of[tet])];
-        strengths[tet] = material.tensile_strength.value_or(kNever);
+        of_tet[tet] = (material.*strength).value_or(kUnbreakable);
       }
-      part.edge_thresholds = directional.empty() ? EdgeThresholds(*model.incidence, strengths)
-                                                 : EdgeThresholds(*model.mesh, *model.incidence,
-                                                                  strengths, directional);
-      if (!scene.weakenings.empty())
-        WeakenEdges(scene, mesh, model.order, *model.incidence, part.edge_thresholds);
+      return of_tet;
+    };
+    const bool one_for_all = scene.materials.size() == 1 && scene.weakenings.empty();
+    if (one_for_all && directional.empty()) {
+      part.edge_thresholds = {scene.materials[0].tensile_strength.value_or(kUnbreakable)};
+    } else {
+      const std::vector<double> tensile = strengths(&Material::tensile_strength);
+      part.edge_thresholds =
+          directional.empty() ? EdgeThresholds(*model.incidence, tensile)
+                              : EdgeThresholds(*model.mesh, *model.incidence, tensile, directional);
+      WeakenEdges(scene, mesh, model.order, *model.incidence, part.edge_thresholds);
+    }
+
+    // Strength in compression.
+    const bool crushes = std::any_of(
+        scene.materials.begin(), scene.materials.end(),
+        [](const Material& material) { return material.compressive_strength.has_value(); });
+    if (crushes && one_for_all) {
+      part.compressive_thresholds = {*scene.materials[0].compressive_strength};
+    } else if (crushes) {
+      part.compressive_thresholds =
+          EdgeThresholds(*model.incidence, strengths(&Material::compressive_strength));
+      WeakenEdges(scene, mesh, model.order, *model.incidence, part.compressive_thresholds);
     }
     part.settings.simultaneity = scene.fracture.simultaneity;
     part.settings.aggregation = scene.fracture.aggregation;

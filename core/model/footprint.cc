@@ -86,6 +86,11 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
             nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses
   }
 
+  const bool crushes = std::any_of(
+      scene.materials.begin(), scene.materials.end(),
+      [](const Material& material) { return material.compressive_strength.has_value(); });
+  if (crushes)
+    add("compressive strength", (uniform && scene.weakenings.empty() ? 1 : edges) * kDouble);
   if (breaks && scene.impurities && scene.impurities->model != ImpurityModel::kOff) {
     const Impurities& impurities = *scene.impurities;
     add("impurities",

@@ -29,7 +29,9 @@ struct ImpurityPart {
 
 // What a body that can break has besides.
 struct FracturePart {
-  std::vector<double> edge_thresholds;  // Pa, an edge each, or one for all
+  std::vector<double> edge_thresholds;  // Pa, of tension, an edge each, or one for all
+  // Pa, of compression, the same; empty where no compression breaks.
+  std::vector<double> compressive_thresholds;
   FractureSettings settings;
   int32_t max_passes = 60;           // of breaking and solving again, in a step
   std::vector<int32_t> client_edge;  // the client's id of every edge

@@ -42,6 +42,7 @@ bool Touches(const SphereSelector& sphere, const Vec3& a, const Vec3& b) {
 
 void WeakenEdges(const Scene& scene, const TetMesh& mesh, const MeshOrder& order,
                  const Incidence& incidence, std::span<double> thresholds) {
+  if (scene.weakenings.empty()) return;
   std::vector<double> factors(thresholds.size(), 1);
   const auto apply = [&](double factor, const auto& holds) {
     for (size_t edge = 0; edge < factors.size(); ++edge) {

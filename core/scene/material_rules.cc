@@ -128,6 +128,11 @@ void CheckMaterial(const std::string& field, const Material& material, Faults& f
   }
   if (material.plasticity.has_value())
     CheckPlasticity(at("plasticity"), material, *material.plasticity, faults, check);
+  if (material.compressive_strength.has_value()) {
+    const double strength = *material.compressive_strength;
+    if (!(strength > 0))
+      faults.Error(at("compressive_strength"), absl::StrCat(strength, " is outside (0, inf]"));
+  }
   if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) return;
   for (size_t k = 0; k < material.fibres.size(); ++k)
     CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);

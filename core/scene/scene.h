@@ -96,6 +96,8 @@ struct Material {
   double poisson_ratio = 0;
   double density = 0;                      // kg/m^3
   std::optional<double> tensile_strength;  // Pa, threshold of edge stress; absent: never breaks
+  // Pa, threshold of compressive edge stress; absent: compression never breaks.
+  std::optional<double> compressive_strength;
   std::vector<FibreFamily> fibres;
   std::optional<Plasticity> plasticity;  // absent: elastic until it breaks
 };
@@ -226,7 +228,7 @@ struct Weakening {
 };
 
 // How fracture is staged within a step (method note, section 7). Used only where some material has
-// a tensile strength.
+// a strength.
 struct Fracture {
   int32_t max_passes = 60;    // break-and-solve passes a step
   double simultaneity = 0.9;  // edges at this share of the worst failure ratio break with it
@@ -277,7 +279,8 @@ struct Scene {
 // Whether anything in the scene can break or is cut.
 inline bool CanBreak(const Scene& scene) {
   for (const Material& material : scene.materials) {
-    if (material.tensile_strength.has_value()) return true;
+    if (material.tensile_strength.has_value() || material.compressive_strength.has_value())
+      return true;
   }
   return !scene.weakenings.empty();
 }

@@ -105,6 +105,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     out.Put(material.density);
     out.Put<uint8_t>(material.tensile_strength.has_value());
     out.Put(material.tensile_strength.value_or(0));
+    out.Put<uint8_t>(material.compressive_strength.has_value());
+    out.Put(material.compressive_strength.value_or(0));
     out.Put<uint64_t>(material.fibres.size());
     for (const FibreFamily& family : material.fibres) PutFibres(family, out);
     out.Put<uint8_t>(material.plasticity.has_value());

@@ -9,16 +9,24 @@
 namespace cleave {
 namespace {
 
-Broadcast<double> Thresholds(const FracturePart& part) {
-  return part.edge_thresholds.size() == 1 ? Broadcast<double>::Uniform(part.edge_thresholds[0])
-                                          : Broadcast<double>::PerItem(part.edge_thresholds.data());
+Broadcast<double> OneOrEach(const std::vector<double>& values) {
+  return values.size() == 1 ? Broadcast<double>::Uniform(values[0])
+                            : Broadcast<double>::PerItem(values.data());
+}
+
+EdgeStrengths StrengthsOf(const FracturePart& part, const std::optional<RandomGraph>& graph) {
+  EdgeStrengths strengths(OneOrEach(part.edge_thresholds));
+  if (!part.compressive_thresholds.empty())
+    strengths.compressive = OneOrEach(part.compressive_thresholds);
+  if (graph) strengths.kappa = Broadcast<double>::PerItem(graph->factors().data());
+  return strengths;
 }
 
 std::optional<RandomGraph> GraphOf(const Model& model) {
   if (!model.fracture->impurities) return std::nullopt;
   const ImpurityPart& part = *model.fracture->impurities;
-  return RandomGraph(*model.incidence, part.settings, part.potencies, Thresholds(*model.fracture),
-                     part.edge_draws, part.edge_deal);
+  return RandomGraph(*model.incidence, part.settings, part.potencies, part.edge_draws,
+                     part.edge_deal);
 }
 
 }  // namespace
@@ -26,9 +34,7 @@ std::optional<RandomGraph> GraphOf(const Model& model) {
 Breaking::Breaking(const Model& model)
     : model_(model),
       graph_(GraphOf(model)),
-      fracture_(*model.mesh, *model.incidence,
-                graph_ ? Broadcast<double>::PerItem(graph_->thresholds().data())
-                       : Thresholds(*model.fracture),
+      fracture_(*model.mesh, *model.incidence, StrengthsOf(*model.fracture, graph_),
                 model.fracture->settings),
       positions_(model.masses.size()),
       stresses_(static_cast<size_t>(model.tet_count())) {

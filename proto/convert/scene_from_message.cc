@@ -173,6 +173,8 @@ class Converter {
     material.poisson_ratio = message.poisson_ratio();
     material.density = message.density();
     if (message.has_tensile_strength()) material.tensile_strength = message.tensile_strength();
+    if (message.has_compressive_strength())
+      material.compressive_strength = message.compressive_strength();
     for (int i = 0; i < message.fibres_size(); ++i) {
       const v1::FibreFamily& from = message.fibres(i);
       FibreFamily& family = material.fibres.emplace_back();

@@ -213,6 +213,8 @@ v1::Scene MessageFromScene(const Scene& scene) {
     if (material.tensile_strength.has_value()) {
       to->set_tensile_strength(*material.tensile_strength);
     }
+    if (material.compressive_strength.has_value())
+      to->set_compressive_strength(*material.compressive_strength);
     for (const FibreFamily& family : material.fibres) {
       v1::FibreFamily* fibres = to->add_fibres();
       fibres->set_stiffness(family.stiffness);

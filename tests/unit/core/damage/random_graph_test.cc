@@ -136,8 +136,7 @@ class Graph : public ::testing::Test {
  protected:
   RandomGraph Make(const RandomGraphSettings& settings, const std::vector<double>& draws = {},
                    const std::vector<int32_t>& deal = {}) {
-    return RandomGraph(incidence_, settings, potencies_, Broadcast<double>::Uniform(strength_),
-                       draws, deal);
+    return RandomGraph(incidence_, settings, potencies_, draws, deal);
   }
   static std::vector<double> Copy(std::span<const double> values) {
     return {values.begin(), values.end()};
@@ -145,22 +144,21 @@ class Graph : public ::testing::Test {
 
   const TetMesh mesh_ = KuhnBox({4, 3, 3}, {4, 3, 3});
   const Incidence incidence_ = BuildIncidence(mesh_);
-  const double strength_ = 1000;
   std::vector<double> potencies_ = std::vector<double>(static_cast<size_t>(mesh_.node_count()), 0);
 };
 
 TEST_F(Graph, ThePureBodyKeepsItsStrength) {
   for (const RandomGraphSettings& settings : {kDegradation, kUpgradation}) {
     const RandomGraph graph = Make(settings);
-    for (const double threshold : graph.thresholds()) EXPECT_NEAR(threshold, strength_, 1e-9);
+    for (const double factor : graph.factors()) EXPECT_NEAR(factor, 1, 1e-12);
   }
 }
 
 TEST_F(Graph, ANodesPotencyChangesItsOwnEdgesOnly) {
-  const std::vector<double> before = Copy(Make(kDegradation).thresholds());
+  const std::vector<double> before = Copy(Make(kDegradation).factors());
   constexpr int32_t kNode = 37;
   potencies_[kNode] = 2;
-  const std::vector<double> after = Copy(Make(kDegradation).thresholds());
+  const std::vector<double> after = Copy(Make(kDegradation).factors());
   for (size_t edge = 0; edge < before.size(); ++edge) {
     const auto [a, b] = incidence_.edges[edge];
     if (a == kNode || b == kNode) {
@@ -174,35 +172,35 @@ TEST_F(Graph, ANodesPotencyChangesItsOwnEdgesOnly) {
 TEST_F(Graph, LostBondsWeakenTheOthersAndAStartFromThemGivesTheSame) {
   for (double& potency : potencies_) potency = 0.5;
   RandomGraph graph = Make(kDegradation);
-  const std::vector<double> before = Copy(graph.thresholds());
+  const std::vector<double> before = Copy(graph.factors());
   const int32_t broken[] = {20, 60};
   const auto changed = graph.Break(broken);
   std::vector<uint8_t> fell(before.size(), 0);
   for (const int32_t edge : changed) fell[static_cast<size_t>(edge)] = 1;
   for (size_t edge = 0; edge < before.size(); ++edge) {
     if (fell[edge] != 0) {
-      EXPECT_LT(graph.thresholds()[edge], before[edge]);
+      EXPECT_LT(graph.factors()[edge], before[edge]);
     } else {
-      EXPECT_EQ(graph.thresholds()[edge], before[edge]);
+      EXPECT_EQ(graph.factors()[edge], before[edge]);
     }
   }
-  const std::vector<double> weakened = Copy(graph.thresholds());
+  const std::vector<double> weakened = Copy(graph.factors());
   std::vector<uint8_t> mask(before.size(), 0);
   graph.Reset(mask);
-  EXPECT_EQ(Copy(graph.thresholds()), before);
+  EXPECT_EQ(Copy(graph.factors()), before);
   for (const int32_t edge : broken) mask[static_cast<size_t>(edge)] = 1;
   graph.Reset(mask);
-  EXPECT_EQ(Copy(graph.thresholds()), weakened);
+  EXPECT_EQ(Copy(graph.factors()), weakened);
 }
 
 TEST_F(Graph, WithoutDegreesNothingFalls) {
   RandomGraphSettings settings = kDegradation;
   settings.follows_degrees = false;
   RandomGraph graph = Make(settings);
-  const std::vector<double> before = Copy(graph.thresholds());
+  const std::vector<double> before = Copy(graph.factors());
   const int32_t broken[] = {20, 60};
   EXPECT_TRUE(graph.Break(broken).empty());
-  EXPECT_EQ(Copy(graph.thresholds()), before);
+  EXPECT_EQ(Copy(graph.factors()), before);
 }
 
 TEST_F(Graph, DrawnStrengthsAreFullOrExtremeInTheirShares) {
@@ -216,9 +214,9 @@ TEST_F(Graph, DrawnStrengthsAreFullOrExtremeInTheirShares) {
   const double kappa = bond(0.5, 0.5, 1, 1);
   const RandomGraph graph = Make(settings, draws);
   size_t weak = 0;
-  for (const double threshold : graph.thresholds()) {
-    const bool is_weak = threshold == strength_ * bond.extreme();
-    EXPECT_TRUE(is_weak || threshold == strength_);
+  for (const double factor : graph.factors()) {
+    const bool is_weak = factor == bond.extreme();
+    EXPECT_TRUE(is_weak || factor == 1);
     weak += is_weak ? 1 : 0;
   }
   EXPECT_NEAR(static_cast<double>(weak) / static_cast<double>(draws.size()), 1 - kappa, 0.01);
@@ -231,10 +229,10 @@ TEST_F(Graph, DealtStrengthsAreThoseOfOtherEdges) {
   settings.follows_degrees = false;
   std::vector<int32_t> deal(incidence_.edges.size());
   std::iota(deal.rbegin(), deal.rend(), 0);
-  const std::vector<double> own = Copy(Make(settings).thresholds());
+  const std::vector<double> own = Copy(Make(settings).factors());
   const RandomGraph graph = Make(settings, {}, deal);
   for (size_t edge = 0; edge < own.size(); ++edge)
-    EXPECT_EQ(graph.thresholds()[edge], own[own.size() - 1 - edge]);
+    EXPECT_EQ(graph.factors()[edge], own[own.size() - 1 - edge]);
 }
 
 }  // namespace

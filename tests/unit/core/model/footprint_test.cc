@@ -15,6 +15,7 @@
 namespace cleave {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 
 std::vector<std::string> Names(const Footprint& footprint) {
@@ -80,6 +81,13 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.materials[0].tensile_strength = 1e5;
   EXPECT_EQ(Names(Plan(scene)).back(), "impurities");
   EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
+  scene = minimal;
+  scene.materials[0].compressive_strength = 1e5;
+  EXPECT_THAT(Names(Plan(scene)), Contains("fracture"));
+  EXPECT_EQ(Names(Plan(scene)).back(), "compressive strength");
+  EXPECT_EQ(BytesOf(Plan(scene), "compressive strength"), 8);
+  scene.weakenings.push_back({SphereSelector{{0, 0, 0}, 1}, 0.5});
+  EXPECT_EQ(BytesOf(Plan(scene), "compressive strength"), 6000 * 8);
 }
 
 TEST(Footprint, FibresTakeTheBytesThatWerePlanned) {
@@ -130,6 +138,7 @@ TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
   const Model breaking = *BuildModel(scene, mesh);
   ASSERT_TRUE(breaking.fracture.has_value());
   EXPECT_EQ(breaking.fracture->edge_thresholds, std::vector<double>{1e5});
+  EXPECT_TRUE(breaking.fracture->compressive_thresholds.empty());
   // Client edge ids are a renumbering that leads to the same nodes.
   const Incidence incidence = BuildIncidence(mesh);
   for (size_t edge = 0; edge < breaking.incidence->edges.size(); ++edge) {

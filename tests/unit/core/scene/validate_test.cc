@@ -164,6 +164,8 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
       {"materials[0].density", [](Scene& s) { s.materials[0].density = -3; }},
       {"materials[0].tensile_strength", [](Scene& s) { s.materials[0].tensile_strength = -1; }},
       {"materials[0].tensile_strength", [](Scene& s) { s.materials[0].tensile_strength = kNan; }},
+      {"materials[0].compressive_strength",
+       [](Scene& s) { s.materials[0].compressive_strength = 0; }},
       {"node_sets[0].name", [](Scene& s) { s.node_sets[0].name = std::string(500, 'x'); }},
       {"node_sets[1].name", [](Scene& s) { s.node_sets.push_back(s.node_sets[0]); }},
       {"node_sets[0].select", [](Scene& s) { s.node_sets[0].select.clear(); }},

@@ -32,6 +32,7 @@ constexpr char kEveryField[] = R"pb(
     poisson_ratio: 0.2
     density: 1900
     tensile_strength: 3e6
+    compressive_strength: 2e7
     law: ELASTIC_LAW_COROTATED_LINEAR
     fibres {
       stiffness: 1e6
@@ -108,7 +109,12 @@ constexpr char kEveryField[] = R"pb(
     center: [ 0, 0, 3 ]
   }
   gravity: [ 0, 0, -9.81 ]
-  fracture { max_passes: 7 simultaneity: 0.8 stress: FRACTURE_STRESS_TOTAL aggregation: STRESS_AGGREGATION_MAX }
+  fracture {
+    max_passes: 7
+    simultaneity: 0.8
+    stress: FRACTURE_STRESS_TOTAL
+    aggregation: STRESS_AGGREGATION_MAX
+  }
   timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
   quality {
     newton_iterations: 4
