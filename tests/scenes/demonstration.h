@@ -1,0 +1,92 @@
+#ifndef CLEAVE_TESTS_SCENES_DEMONSTRATION_H_
+#define CLEAVE_TESTS_SCENES_DEMONSTRATION_H_
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/base/vec3.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/procedural_shapes.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/scene/scene.h"
+#include "core/simulation/simulation.h"
+#include "core/stream/frame.h"
+
+// The paper's demonstrations, each defined once: for tests, the scene runner and pictures.
+// Magnitudes are Cleave's own; what is claimed are orderings and geometry.
+
+namespace cleave {
+
+// Which of a demonstration's bodies.
+struct Setting {
+  std::string variant = {};  // "iso", "fibre30" ...; each lists its own
+  uint32_t seed = 1;    // of mesh and impurities
+  MeshLayout layout = MeshLayout::kUnstructured;
+  double coarseness = 1;  // cells this many times as long as at full size
+};
+
+// What is to be simulated, and what its metrics need to know of it.
+struct Demonstration {
+  Scene scene;  // its mesh source is empty: the mesh is here
+  TetMesh mesh;
+  double cell_size = 0;                 // m, h
+  std::vector<int32_t> grip = {};       // node ids of what holds
+  std::vector<int32_t> pulled = {};     // node ids of what is moved
+  size_t pull_motion = 0;               // the motion that moves it
+  Vec3 pull_direction{1, 0, 0};         // unit
+  double rest_length = 1;               // m, between the grips: what elongation counts by
+  std::vector<uint8_t> in_map = {};     // nonzero: a node of the impurity map; empty: no map
+  std::vector<Vec3> fibres = {};        // unit, a tet each; empty: no fibre to compare with
+  int64_t frames_after_separation = 2;  // until a run ends
+};
+
+// One run, frame by frame; [0] is the rest state, reports[i] belongs to frames[i + 1].
+struct Run {
+  std::vector<Frame> frames;
+  std::vector<FrameReport> reports;
+  int64_t separation = -1;  // the frame in which grips came apart; -1: never
+
+  double SecondsPerFrame() const;
+  double PeakForce(const Demonstration& demonstration) const;  // N, along the pull
+};
+
+// Simulates until the scene's last frame, or a few after the grips came apart. InvalidArgument for
+// a scene or mesh that Cleave refuses, naming every fault; what the simulation returns.
+absl::StatusOr<Run> RunDemonstration(const Demonstration& demonstration, int threads = 1);
+
+// Named numbers, as the scene runner prints them.
+using Metrics = std::map<std::string, double>;
+
+// What every run has: counts of pieces, dust, broken edges, frames of first fracture and
+// separation, peak force, lift where there is a map, A(a) where there are fibres, seconds a frame.
+Metrics CommonMetrics(const Demonstration& demonstration, const Incidence& incidence,
+                      const Run& run);
+
+// A demonstration by name.
+struct DemonstrationKind {
+  std::string name;   // of the runner, tests and pictures
+  std::string paper;  // the figure or section
+  std::vector<std::string> variants;
+  absl::StatusOr<Demonstration> (*make)(const Setting&);
+  // Those of the demonstration's own, besides the common ones.
+  Metrics (*measure)(const Demonstration&, const Incidence&, const Run&);
+};
+std::span<const DemonstrationKind> DemonstrationKinds();
+
+// Makes, runs and measures in one go. Errors: NotFound for an unknown name; of the parts.
+struct Outcome {
+  Demonstration demonstration;
+  Run run;
+  Metrics metrics;
+};
+absl::StatusOr<Outcome> Demonstrate(const std::string& name, const Setting& setting,
+                                    int threads = 1);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_SCENES_DEMONSTRATION_H_
