@@ -27,6 +27,13 @@ inline constexpr double kMaxSteepness = 100;  // k: strengths span a factor of 2
 inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly differ from here on
 inline constexpr double kMaxDensity = 1e6;    // kg/m^3; osmium has 22 590
 
+inline constexpr int64_t kMaxColliders = 100;              // every node near the body looks at each
+inline constexpr int64_t kMaxColliderTriangles = 200'000;  // sent inside the scene
+inline constexpr double kMaxFriction = 10;                 // from here on nothing slides
+inline constexpr double kMinContactStiffness = 0.01;       // softer, bodies pass through each other
+inline constexpr double kMaxContactStiffness = 1000;       // harder, solves crawl
+inline constexpr double kMaxColliderMass = 1e12;           // kg
+
 inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps
 inline constexpr double kCoarseStepSeconds = 0.1;  // a warning from here on
 inline constexpr double kMinFramesPerSecond = 1e-3;

@@ -201,6 +201,55 @@ struct Impurities {
   std::optional<double> degree_weight = std::nullopt;
 };
 
+// Everything on the side that the normal points away from.
+struct PlaneShape {
+  Vec3 point{0, 0, 0};   // m
+  Vec3 normal{0, 0, 1};  // any length but 0
+};
+struct SphereShape {
+  Vec3 center{0, 0, 0};  // m
+  double radius = 0;     // m
+};
+// A box, turned about its centre.
+struct BoxShape {
+  Vec3 center{0, 0, 0};         // m
+  Vec3 size{0, 0, 0};           // m, whole edges
+  Vec3 rotation_axis{0, 0, 1};  // any length but 0
+  double rotation = 0;          // rad
+};
+// A closed surface of triangles that turn counterclockwise seen from outside.
+struct SurfaceShape {
+  std::vector<Vec3> vertices;                     // m
+  std::vector<std::array<int32_t, 3>> triangles;  // of vertices, from 0
+  // A file beside the scene file, in place of both. Only clients know it: they send what it holds.
+  std::string file = {};
+};
+using Shape = std::variant<std::monostate, PlaneShape, SphereShape, BoxShape, SurfaceShape>;
+
+// What a collider weighs and how it flies at the start. Exactly one of mass and density is given;
+// mass is spread evenly over the shape.
+struct RigidBody {
+  std::optional<double> mass;      // kg
+  std::optional<double> density;   // kg/m^3
+  Vec3 velocity{0, 0, 0};          // m/s
+  Vec3 angular_velocity{0, 0, 0};  // rad/s, about the centre of mass
+};
+
+// A rigid thing that nodes cannot enter (method note, section 9). It rests, follows keyframes, or
+// is a body that moves under gravity and is pushed back. Colliders do not see each other.
+struct Collider {
+  std::string name;
+  Shape shape;
+  std::vector<Keyframe> keyframes;  // by ascending time; from where the shape is
+  Vec3 rotation_center{0, 0, 0};    // m
+  Vec3 rotation_axis{0, 0, 1};      // any length but 0
+  std::optional<RigidBody> body;
+  double friction = 0;  // Coulomb's coefficient
+  double stiffness =
+      5;              // of the contact: this times Young's modulus times the mean edge, N/m a node
+  double margin = 0;  // m, that nodes keep from the shape
+};
+
 // Which stress breaks edges of a material with fibres.
 enum class FractureStress {
   kMatrix,  // that of the isotropic solid, so that cracks follow the fibres
@@ -270,6 +319,7 @@ struct Scene {
   Fracture fracture;
   std::vector<Weakening> weakenings;  // later ones win
   std::optional<Impurities> impurities;
+  std::vector<Collider> colliders;
   Timing timing;
   Quality quality;
   Output output;

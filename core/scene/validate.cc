@@ -9,6 +9,8 @@
 #include "absl/strings/string_view.h"
 #include "core/mesh/procedural.h"
 #include "core/scene/checker.h"
+#include "core/scene/collider_rules.h"
+#include "core/scene/keyframe_rules.h"
 #include "core/scene/limits.h"
 #include "core/scene/material_rules.h"
 #include "core/scene/selection.h"
@@ -114,21 +116,7 @@ void CheckMotions(const Scene& scene, const std::set<std::string>& names, Faults
     CheckSetName(at("node_set"), motion.node_set, names, faults);
     check.Coordinates(at("rotation_center"), motion.rotation_center);
     check.Direction(at("rotation_axis"), motion.rotation_axis);
-    if (!check.List(at("keyframes"), motion.keyframes.size(), limits::kMaxKeyframes)) continue;
-    bool turns = false;
-    for (size_t k = 0; k < motion.keyframes.size(); ++k) {
-      const Keyframe& keyframe = motion.keyframes[k];
-      const std::string field = At(at("keyframes"), k);
-      if (!std::isfinite(keyframe.time)) {
-        faults.Error(field + ".time", absl::StrCat(keyframe.time, " is not a finite number"));
-      } else if (k > 0 && !(keyframe.time > motion.keyframes[k - 1].time)) {
-        faults.Error(field + ".time", absl::StrCat(keyframe.time, " s is not after the previous, ",
-                                                   motion.keyframes[k - 1].time, " s"));
-      }
-      check.Coordinates(field + ".translation", keyframe.translation);
-      check.Within(field + ".rotation", keyframe.rotation, -limits::kMaxLength, limits::kMaxLength);
-      turns = turns || keyframe.rotation != 0;
-    }
+    const bool turns = CheckKeyframes(at("keyframes"), motion.keyframes, faults);
     if (turns && motion.axes != std::array<bool, 3>{true, true, true}) {
       faults.Error(at("axes"),
                    "leaves coordinates free, but the motion rotates: prescribe all three");
@@ -330,6 +318,7 @@ Faults ValidateScene(const Scene& scene) {
   if (scene.gravity.has_value()) check.Coordinates("gravity", *scene.gravity);
   CheckWeakenings(scene, names, faults, check);
   if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults, check);
+  CheckColliders(scene, faults);
   CheckSettings(scene, faults, check);
   return faults;
 }

@@ -78,6 +78,52 @@ void PutImpurities(const Impurities& impurities, ByteWriter& out) {
   out.Put(impurities.degree_weight.value_or(0));
 }
 
+void PutKeyframes(const std::vector<Keyframe>& keyframes, ByteWriter& out) {
+  out.Put<uint64_t>(keyframes.size());
+  for (const Keyframe& keyframe : keyframes) {
+    out.Put(keyframe.time);
+    out.Put(keyframe.translation);
+    out.Put(keyframe.rotation);
+  }
+}
+
+void PutOptional(const std::optional<double>& value, ByteWriter& out) {
+  out.Put<uint8_t>(value.has_value());
+  out.Put(value.value_or(0));
+}
+
+void PutCollider(const Collider& collider, ByteWriter& out) {
+  out.Put<uint64_t>(collider.shape.index());
+  if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
+    out.Put(plane->point);
+    out.Put(plane->normal);
+  } else if (const auto* sphere = std::get_if<SphereShape>(&collider.shape)) {
+    out.Put(sphere->center);
+    out.Put(sphere->radius);
+  } else if (const auto* box = std::get_if<BoxShape>(&collider.shape)) {
+    out.Put(box->center);
+    out.Put(box->size);
+    out.Put(box->rotation_axis);
+    out.Put(box->rotation);
+  } else if (const auto* surface = std::get_if<SurfaceShape>(&collider.shape)) {
+    out.PutVector(surface->vertices);
+    out.PutVector(surface->triangles);
+  }
+  PutKeyframes(collider.keyframes, out);
+  out.Put(collider.rotation_center);
+  out.Put(collider.rotation_axis);
+  out.Put<uint8_t>(collider.body.has_value());
+  if (collider.body.has_value()) {
+    PutOptional(collider.body->mass, out);
+    PutOptional(collider.body->density, out);
+    out.Put(collider.body->velocity);
+    out.Put(collider.body->angular_velocity);
+  }
+  out.Put(collider.friction);
+  out.Put(collider.stiffness);
+  out.Put(collider.margin);
+}
+
 template <typename T>
 void Update(const std::vector<T>& items, StateHash& hash) {
   const uint64_t count = items.size();
@@ -122,12 +168,7 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   for (const Motion& motion : scene.motions) {
     PutText(motion.node_set, out);
     out.Put(motion.axes);
-    out.Put<uint64_t>(motion.keyframes.size());
-    for (const Keyframe& keyframe : motion.keyframes) {
-      out.Put(keyframe.time);
-      out.Put(keyframe.translation);
-      out.Put(keyframe.rotation);
-    }
+    PutKeyframes(motion.keyframes, out);
     out.Put(motion.rotation_center);
     out.Put(motion.rotation_axis);
   }
@@ -158,6 +199,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   }
   out.Put<uint8_t>(scene.impurities.has_value());
   if (scene.impurities) PutImpurities(*scene.impurities, out);
+  out.Put<uint64_t>(scene.colliders.size());
+  for (const Collider& collider : scene.colliders) PutCollider(collider, out);
   out.Put(scene.timing.frames_per_second);
   out.Put(scene.timing.steps_per_frame);
   out.Put(scene.quality.newton_iterations);

@@ -295,14 +295,82 @@ class Converter {
         Vector(field + ".rotation_center", message.rotation_center(), motion.rotation_center);
     motion.rotation_axis =
         Vector(field + ".rotation_axis", message.rotation_axis(), motion.rotation_axis);
-    for (int i = 0; i < message.keyframes_size(); ++i) {
-      const v1::Keyframe& keyframe = message.keyframes(i);
-      motion.keyframes.push_back({keyframe.time(),
-                                  Vector(absl::StrCat(field, ".keyframes[", i, "].translation"),
-                                         keyframe.translation(), {0, 0, 0}),
-                                  keyframe.rotation()});
-    }
+    motion.keyframes = Keyframes(field, message.keyframes());
     return motion;
+  }
+
+  std::vector<Keyframe> Keyframes(const std::string& field,
+                                  const google::protobuf::RepeatedPtrField<v1::Keyframe>& from) {
+    std::vector<Keyframe> keyframes;
+    for (int i = 0; i < from.size(); ++i) {
+      keyframes.push_back({from[i].time(),
+                           Vector(absl::StrCat(field, ".keyframes[", i, "].translation"),
+                                  from[i].translation(), {0, 0, 0}),
+                           from[i].rotation()});
+    }
+    return keyframes;
+  }
+
+  Shape OneShape(const std::string& field, const v1::Collider& message) {
+    switch (message.shape_case()) {
+      case v1::Collider::kPlane:
+        return PlaneShape{Vector(field + ".plane.point", message.plane().point(), {0, 0, 0}),
+                          Vector(field + ".plane.normal", message.plane().normal(), {0, 0, 1})};
+      case v1::Collider::kSphere:
+        return SphereShape{Vector(field + ".sphere.center", message.sphere().center(), {0, 0, 0}),
+                           message.sphere().radius()};
+      case v1::Collider::kBox: {
+        BoxShape box;
+        box.center = Vector(field + ".box.center", message.box().center(), box.center);
+        box.size = RequiredVector(field + ".box.size", message.box().size(), {1, 1, 1});
+        box.rotation_axis =
+            Vector(field + ".box.rotation_axis", message.box().rotation_axis(), box.rotation_axis);
+        box.rotation = message.box().rotation();
+        return box;
+      }
+      case v1::Collider::kSurface: {
+        const v1::SurfaceShape& from = message.surface();
+        SurfaceShape surface;
+        surface.vertices = Vectors(field + ".surface.vertices", from.vertices());
+        surface.file = from.file();
+        if (from.triangles_size() % 3 != 0) {
+          faults_.Error(field + ".surface.triangles",
+                        absl::StrCat("has ", from.triangles_size(),
+                                     " numbers; a multiple of three is required"));
+        }
+        surface.triangles.resize(static_cast<size_t>(from.triangles_size() / 3));
+        for (size_t k = 0; k < 3 * surface.triangles.size(); ++k)
+          surface.triangles[k / 3][k % 3] = from.triangles(static_cast<int>(k));
+        return surface;
+      }
+      case v1::Collider::SHAPE_NOT_SET:
+        break;
+    }
+    return std::monostate{};
+  }
+
+  Collider OneCollider(const std::string& field, const v1::Collider& message) {
+    Collider collider;
+    collider.name = message.name();
+    collider.shape = OneShape(field, message);
+    collider.keyframes = Keyframes(field, message.keyframes());
+    collider.rotation_center =
+        Vector(field + ".rotation_center", message.rotation_center(), collider.rotation_center);
+    collider.rotation_axis =
+        Vector(field + ".rotation_axis", message.rotation_axis(), collider.rotation_axis);
+    if (message.has_body()) {
+      const v1::RigidBody& from = message.body();
+      RigidBody& body = collider.body.emplace();
+      if (from.has_mass()) body.mass = from.mass();
+      if (from.has_density()) body.density = from.density();
+      body.velocity = Vector(field + ".body.velocity", from.velocity(), body.velocity);
+      body.angular_velocity =
+          Vector(field + ".body.angular_velocity", from.angular_velocity(), body.angular_velocity);
+    }
+    collider.friction = message.friction();
+    if (message.has_stiffness()) collider.stiffness = message.stiffness();
+    collider.margin = message.margin();
+    return collider;
   }
 
  private:
@@ -392,6 +460,10 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   for (int i = 0; i < message.weakenings_size(); ++i) {
     scene.weakenings.push_back(
         convert.OneWeakening(absl::StrCat("weakenings[", i, "]"), message.weakenings(i)));
+  }
+  for (int i = 0; i < message.colliders_size(); ++i) {
+    scene.colliders.push_back(
+        convert.OneCollider(absl::StrCat("colliders[", i, "]"), message.colliders(i)));
   }
   scene.fracture.aggregation = convert.AfterUnspecified<StressAggregation>(
       "fracture.aggregation", message.fracture().aggregation(), 2);

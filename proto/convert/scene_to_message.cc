@@ -114,6 +114,16 @@ v1::ElasticLaw MessageFromLaw(ElasticLaw law) {
   return v1::ELASTIC_LAW_STABLE_NEO_HOOKEAN;
 }
 
+void Write(const std::vector<Keyframe>& keyframes,
+           google::protobuf::RepeatedPtrField<v1::Keyframe>* message) {
+  for (const Keyframe& keyframe : keyframes) {
+    v1::Keyframe* to = message->Add();
+    to->set_time(keyframe.time);
+    Write(keyframe.translation, to->mutable_translation());
+    to->set_rotation(keyframe.rotation);
+  }
+}
+
 void WriteMotion(const Motion& motion, v1::Motion* message) {
   message->set_node_set(motion.node_set);
   for (int axis = 0; axis < 3; ++axis) {
@@ -121,14 +131,55 @@ void WriteMotion(const Motion& motion, v1::Motion* message) {
       message->add_axes(static_cast<v1::Axis>(v1::AXIS_X + axis));
     }
   }
-  for (const Keyframe& keyframe : motion.keyframes) {
-    v1::Keyframe* to = message->add_keyframes();
-    to->set_time(keyframe.time);
-    Write(keyframe.translation, to->mutable_translation());
-    to->set_rotation(keyframe.rotation);
-  }
+  Write(motion.keyframes, message->mutable_keyframes());
   Write(motion.rotation_center, message->mutable_rotation_center());
   Write(motion.rotation_axis, message->mutable_rotation_axis());
+}
+
+struct WriteShape {
+  v1::Collider* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const PlaneShape& plane) const {
+    Write(plane.point, message->mutable_plane()->mutable_point());
+    Write(plane.normal, message->mutable_plane()->mutable_normal());
+  }
+  void operator()(const SphereShape& sphere) const {
+    Write(sphere.center, message->mutable_sphere()->mutable_center());
+    message->mutable_sphere()->set_radius(sphere.radius);
+  }
+  void operator()(const BoxShape& box) const {
+    v1::BoxShape* to = message->mutable_box();
+    Write(box.center, to->mutable_center());
+    Write(box.size, to->mutable_size());
+    Write(box.rotation_axis, to->mutable_rotation_axis());
+    to->set_rotation(box.rotation);
+  }
+  void operator()(const SurfaceShape& surface) const {
+    v1::SurfaceShape* to = message->mutable_surface();
+    for (const Vec3& vertex : surface.vertices) Write(vertex, to->mutable_vertices());
+    for (const auto& triangle : surface.triangles)
+      to->mutable_triangles()->Add(triangle.begin(), triangle.end());
+    to->set_file(surface.file);
+  }
+};
+
+void WriteCollider(const Collider& collider, v1::Collider* message) {
+  message->set_name(collider.name);
+  std::visit(WriteShape{message}, collider.shape);
+  Write(collider.keyframes, message->mutable_keyframes());
+  Write(collider.rotation_center, message->mutable_rotation_center());
+  Write(collider.rotation_axis, message->mutable_rotation_axis());
+  if (collider.body.has_value()) {
+    v1::RigidBody* to = message->mutable_body();
+    if (collider.body->mass.has_value()) to->set_mass(*collider.body->mass);
+    if (collider.body->density.has_value()) to->set_density(*collider.body->density);
+    Write(collider.body->velocity, to->mutable_velocity());
+    Write(collider.body->angular_velocity, to->mutable_angular_velocity());
+  }
+  message->set_friction(collider.friction);
+  message->set_stiffness(collider.stiffness);
+  message->set_margin(collider.margin);
 }
 
 struct WriteEdges {
@@ -252,6 +303,7 @@ v1::Scene MessageFromScene(const Scene& scene) {
     std::visit(WriteEdges{to}, weakening.edges);
     to->set_factor(weakening.factor);
   }
+  for (const Collider& collider : scene.colliders) WriteCollider(collider, message.add_colliders());
   message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
                                                   ? v1::STRESS_AGGREGATION_MAX
                                                   : v1::STRESS_AGGREGATION_MEAN);

@@ -125,6 +125,59 @@ constexpr char kEveryField[] = R"pb(
   }
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
+  colliders {
+    name: "floor"
+    plane {
+      point: [ 0, 0, -1 ]
+      normal: [ 0, 1, 1 ]
+    }
+    friction: 0.3
+    stiffness: 2
+    margin: 0.01
+    rotation_center: [ 1, 0, 0 ]
+    rotation_axis: [ 0, 1, 0 ]
+    keyframes { time: 1 rotation: 2 translation: [ 0, 0, 1 ] }
+  }
+  colliders {
+    sphere {
+      center: [ 0, 0, 2 ]
+      radius: 0.1
+    }
+    body {
+      density: 7850
+      velocity: [ 5, 0, 0 ]
+      angular_velocity: [ 0, 0, 1 ]
+    }
+    rotation_center: [ 1, 0, 0 ]
+    rotation_axis: [ 0, 1, 0 ]
+    stiffness: 3
+  }
+  colliders {
+    box {
+      center: [ 1, 2, 3 ]
+      size: [ 4, 5, 6 ]
+      rotation_axis: [ 1, 0, 0 ]
+      rotation: 0.5
+    }
+    body {
+      mass: 3
+      velocity: [ 1, 2, 3 ]
+      angular_velocity: [ 1, 0, 0 ]
+    }
+    rotation_center: [ 1, 0, 0 ]
+    rotation_axis: [ 0, 1, 0 ]
+    stiffness: 4
+  }
+  colliders {
+    surface {
+      vertices: [ 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 ]
+      triangles: [ 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3 ]
+      file: "ball.obj"
+    }
+    rotation_center: [ 1, 0, 0 ]
+    rotation_axis: [ 0, 1, 0 ]
+    stiffness: 4
+  }
   weakenings { node_set: "grip" factor: inf }
   weakenings {
     box {
