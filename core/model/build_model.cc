@@ -12,6 +12,7 @@
 #include "core/damage/edge_thresholds.h"
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
+#include "core/model/collider_term.h"
 #include "core/model/elastic_term.h"
 #include "core/material/fibre_directions.h"
 #include "core/model/fibre_term.h"
@@ -121,6 +122,25 @@ double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
   return sum / static_cast<double>(incidence.edges.size());
 }
 
+// Young's modulus times the mean edge, N/m: one where the scene has one material, else of the mean
+// modulus round every node.
+std::vector<double> NodeStiffness(const std::vector<Material>& materials,
+                                  const std::vector<int32_t>& material_of, const Model& model) {
+  if (materials.size() == 1) return {materials[0].youngs_modulus * model.mean_edge_length};
+  std::vector<double> stiffness(model.masses.size(), 0), volumes(model.masses.size(), 0);
+  for (size_t tet = 0; tet < material_of.size(); ++tet) {
+    const double volume = SignedVolume(CornersOf(*model.mesh, static_cast<int64_t>(tet)));
+    const double modulus = materials[static_cast<size_t>(material_of[tet])].youngs_modulus;
+    for (const int32_t node : model.mesh->tets[tet]) {
+      volumes[static_cast<size_t>(node)] += volume;
+      stiffness[static_cast<size_t>(node)] += volume * modulus * model.mean_edge_length;
+    }
+  }
+  for (size_t node = 0; node < stiffness.size(); ++node)
+    stiffness[node] = volumes[node] > 0 ? stiffness[node] / volumes[node] : 0;
+  return stiffness;
+}
+
 // The client's ids of the solver's edges: ranks by the client's node ids.
 std::vector<int32_t> ClientEdges(const Incidence& incidence, const MeshOrder& order) {
   struct Entry {
@@ -210,6 +230,14 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     model.motions.push_back(std::move(part));
   }
 
+  // Colliders. Those that move bring unknowns of their own.
+  if (!scene.colliders.empty()) {
+    auto term = std::make_unique<ColliderTerm>(
+        scene, NodeStiffness(scene.materials, material_of, model), model);
+    model.colliders = term.get();
+    model.node_terms.push_back(std::move(term));
+  }
+
   // Fracture, where something can break.
   if (CanBreak(scene)) {
     FracturePart& part = model.fracture.emplace();
@@ -258,7 +286,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
 
 State InitialState(const Scene& scene, const TetMesh& mesh, const Model& model) {
   State state;
-  state.displacements.assign(static_cast<size_t>(mesh.node_count()), Splat(0));
+  state.displacements.assign(model.masses.size(), Splat(0));
   state.velocities = state.displacements;
   for (const InitialVelocity& initial : scene.initial_velocities) {
     const Vec3& spin = initial.angular_velocity;
@@ -272,6 +300,7 @@ State InitialState(const Scene& scene, const TetMesh& mesh, const Model& model) 
       state.velocities[n] += ToDouble4(initial.velocity) + turning;
     }
   }
+  if (model.colliders != nullptr) model.colliders->Start(state);
   return state;
 }
 

@@ -8,6 +8,7 @@
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
 #include "core/material/moduli.h"
+#include "core/model/collider_term.h"
 #include "core/model/fibre_term.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/tet_batches.h"
@@ -68,6 +69,15 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     add("motions", bytes);
   }
   if (!scene.initial_velocities.empty()) add("initial velocities", 0);
+  if (!scene.colliders.empty()) {
+    int64_t bytes = nodes * ColliderTerm::BytesPerNode() + (uniform ? 1 : nodes) * kDouble;
+    for (const Collider& collider : scene.colliders) {
+      const auto* surface = std::get_if<SurfaceShape>(&collider.shape);
+      bytes += ColliderTerm::BytesOf(collider.keyframes.size(),
+                                     surface != nullptr ? surface->triangles.size() : 0);
+    }
+    add("colliders", bytes);
+  }
   const bool breaks = CanBreak(scene);
   size_t families = 0;
   bool directional = false;

@@ -38,6 +38,8 @@ struct FracturePart {
   std::optional<ImpurityPart> impurities;
 };
 
+class ColliderTerm;
+
 // What a scene becomes: just the parts that it asks for. Ids in it are the solver's, nodes and tets
 // in an order that is good for memory; `order` leads back. Does not change but for what
 // its terms carry from step to step.
@@ -47,19 +49,23 @@ struct Model {
   MeshOrder order;                      // old ids are the client's
   std::unique_ptr<const Incidence> incidence;
   double mean_edge_length = 0;  // m
-  std::vector<double> masses;   // kg, a node each; 0 for a node of no tet, which rests
+  // kg, a node each; 0 for a node of no tet, which rests. Then those of unknowns that are no nodes:
+  // two of each moving collider.
+  std::vector<double> masses;
   std::vector<std::unique_ptr<TetTerm>> tet_terms;
   std::vector<std::unique_ptr<NodeTerm>> node_terms;
-  std::optional<Vec3> gravity;  // m/s^2
+  const ColliderTerm* colliders = nullptr;  // one of the node terms, where the scene has any
+  std::optional<Vec3> gravity;              // m/s^2
   std::vector<PrescribedMotion> motions;
   std::optional<FracturePart> fracture;
   Quality quality;
 
   int64_t node_count() const { return mesh->node_count(); }
+  int64_t unknown_count() const { return static_cast<int64_t>(masses.size()); }
   int64_t tet_count() const { return mesh->tet_count(); }
 };
 
-// How the body is at an instant.
+// How the body is at an instant; a record an unknown.
 struct State {
   NodalVector displacements;  // m, from rest
   NodalVector velocities;     // m/s

@@ -18,6 +18,7 @@ struct NodeTermWork {
   double external_work = 0;  // J, that it brought into the body from outside
   double stored_energy = 0;  // J, that it holds at the end of the step
   double dissipation = 0;    // J, that it took out for good, as friction does
+  double integration = 0;    // J, that backward Euler took out of what it stores
 };
 
 // Forces on nodes from outside the tets: loads, contact. Ids are the solver's. Loops run on the
@@ -29,6 +30,12 @@ class NodeTerm {
   // Bytes that this term holds.
   virtual int64_t bytes() const = 0;
 
+  // The longest part (s) of a step from `start` to `end` that this term can follow, with the body's
+  // state at the start; a longer step is cut into equal parts.
+  virtual double LongestPart(double start, double end, const State& state) const {
+    (void)state;
+    return end - start;
+  }
   // Called before each attempt at a step from `start` to `end` (s), whose state at the start is
   // given: fixes what the step takes over from there, such as a load's value or the normal force
   // that friction goes by. A step that fails is attempted again in halves, so this replaces what
@@ -42,8 +49,17 @@ class NodeTerm {
     (void)displacements;
     (void)couplings;
   }
+  // N, norm of what rounding of positions may add to forces at these displacements, a few units in
+  // the last place of each: a solve can do no better.
+  virtual double RoundingForce(const NodalVector& displacements) const {
+    (void)displacements;
+    return 0;
+  }
   // The step that began has succeeded with this state at its end.
   virtual NodeTermWork EndStep(const State& state) = 0;
+  // After EndStep: rewrites the unknowns that the term itself brought in, where they are measured
+  // anew in every step.
+  virtual void Renew(State& state) { (void)state; }
 
   // What decides later steps besides the state of the nodes. Restore refuses (DataLoss) what cannot
   // belong to this term, and then changes nothing.

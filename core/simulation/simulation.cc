@@ -15,6 +15,7 @@
 #include "core/base/stopwatch.h"
 #include "core/damage/components.h"
 #include "core/model/build_model.h"
+#include "core/model/collider_term.h"
 #include "core/simulation/scene_digest.h"
 #include "core/solver/stepper.h"
 
@@ -91,6 +92,13 @@ class BodySimulation final : public Simulation {
     report.integration_dissipation = energies_.integration_dissipation;
     report.fragments = fragments_;
     report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
+    if (model_.colliders != nullptr) {
+      for (const ColliderPose& pose : model_.colliders->Poses(time(), state_)) {
+        const Eigen::Vector3d translation = pose.to - pose.turn * pose.from;
+        report.colliders.push_back({{pose.turn.w(), pose.turn.x(), pose.turn.y(), pose.turn.z()},
+                                    {translation[0], translation[1], translation[2]}});
+      }
+    }
     report.assembly_seconds = steps.assembly_seconds;
     report.linear_solve_seconds = steps.linear_solve_seconds;
     report.total_seconds = watch.Seconds();

@@ -1,6 +1,7 @@
 #ifndef CLEAVE_CORE_SIMULATION_SIMULATION_H_
 #define CLEAVE_CORE_SIMULATION_SIMULATION_H_
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,6 +16,12 @@
 #include "core/scene/scene.h"
 
 namespace cleave {
+
+// Where a collider is: a point that the scene puts at X is at rotation * X + translation.
+struct ColliderPlace {
+  std::array<double, 4> rotation{1, 0, 0, 0};  // unit quaternion: w, x, y, z
+  Vec3 translation{0, 0, 0};                   // m
+};
 
 // What one frame took and reached. Sums over the frame's steps unless a field says otherwise.
 struct FrameReport {
@@ -35,10 +42,11 @@ struct FrameReport {
   // J, what time integration took out, since the start. External work is the change of kinetic,
   // elastic and contact energy, and what fracture, friction and integration took out.
   double integration_dissipation = 0;
-  int64_t broken_edges = 0;         // since the start
-  int64_t new_broken_edges = 0;     // in this frame
-  int64_t fragments = 0;            // node components through unbroken edges, at the end
-  std::vector<Vec3> motion_forces;  // N, force that each motion exerts on the body, at the end
+  int64_t broken_edges = 0;              // since the start
+  int64_t new_broken_edges = 0;          // in this frame
+  int64_t fragments = 0;                 // node components through unbroken edges, at the end
+  std::vector<Vec3> motion_forces;       // N, force that each motion exerts on the body, at the end
+  std::vector<ColliderPlace> colliders;  // at the end, in the scene's order
   double assembly_seconds = 0;
   double linear_solve_seconds = 0;
   double fracture_seconds = 0;

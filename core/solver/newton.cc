@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
@@ -17,6 +18,9 @@ constexpr double kSlow = 0.1;
 // Linear solves aim this far below what the whole step has to reach.
 constexpr double kLinearMargin = 0.1;
 constexpr int kMaxBacktracks = 40;
+// Newton's method needs a few iterations to find out which nodes touch, however good its steps are;
+// half a step would not spare it that.
+constexpr int32_t kTouchingIterations = 40;
 // Energies are sums of about as many roundings as there are tets, mostly of random sign.
 constexpr double kEnergyRounding = 1e-14;
 // Elastic terms of an edge carry a few roundings each.
@@ -28,9 +32,9 @@ NewtonSolver::NewtonSolver(const Model& model)
     : model_(model),
       fixed_nodes_(FindFixedNodes(model)),
       gravity_(model.gravity ? ToDouble4(*model.gravity) : Splat(0)),
-      blocks_(model.node_count()),
-      matrix_(model.incidence->edges, model.node_count()),
-      pcg_(model.node_count(), fixed_nodes_),
+      blocks_(model.unknown_count()),
+      matrix_(model.incidence->edges, model.unknown_count()),
+      pcg_(model.unknown_count(), fixed_nodes_),
       inertia_(model.masses.size()),
       gradient_(model.masses.size()),
       residual_(model.masses.size()),
@@ -137,9 +141,11 @@ absl::Status NewtonSolver::NotConverged(double relative_residual) const {
     }
     if (!std::isfinite(size)) break;
   }
+  const std::string where = worst < static_cast<size_t>(model_.node_count())
+                                ? absl::StrCat("node ", model_.order.old_node[worst])
+                                : std::string("a moving collider");
   return absl::AbortedError(absl::StrCat("the solve did not converge: relative residual ",
-                                         relative_residual, ", largest at node ",
-                                         model_.order.old_node[worst]));
+                                         relative_residual, ", largest at ", where));
 }
 
 absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displacements,
@@ -157,6 +163,8 @@ absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displa
         [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
     rounding_energy_ = kTermRounding * gross[0];
     rounding_force_ = rounding_inertia_ + kTermRounding * std::sqrt(gross[1]);
+    for (const auto& term : model_.node_terms)
+      rounding_force_ += term->RoundingForce(displacements);
   }
   ScopedTimer timer(report.linear_solve_seconds);
   const Quality& quality = model_.quality;
@@ -208,8 +216,10 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       report.residual = std::max(report.residual, relative);
       return absl::OkStatus();
     }
-    if (iteration == quality.newton_iterations || !std::isfinite(relative))
-      return NotConverged(relative);
+    const bool touching = !matrix_.couplings().empty();
+    const int32_t most = touching ? std::max(quality.newton_iterations, kTouchingIterations)
+                                  : quality.newton_iterations;
+    if (iteration >= most || !std::isfinite(relative)) return NotConverged(relative);
     ++report.newton_iterations;
 
     const bool slow = last_share == 1 && residual_norm_ > kSlow * last_norm;

@@ -1,5 +1,7 @@
 #include "core/solver/stepper.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -7,6 +9,13 @@
 #include "core/base/stopwatch.h"
 
 namespace cleave {
+namespace {
+
+// What moves faster than this many parts can follow passes through: a scene that moves a collider
+// at the speed of light shall not take forever.
+constexpr int32_t kMaxParts = 64;
+
+}  // namespace
 
 Stepper::Stepper(const Model& model)
     : model_(model), newton_(model), displacements_(model.masses.size()) {
@@ -20,7 +29,12 @@ absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State
     double start, end;
     int32_t halvings;
   };
-  std::vector<Part> parts = {{start, end, 0}};
+  std::vector<Part> parts;
+  const int32_t count = PartCount(start, end, state);
+  const auto time_of = [&](int32_t k) {
+    return k == count ? end : start + (end - start) * k / count;
+  };
+  for (int32_t k = count - 1; k >= 0; --k) parts.push_back({time_of(k), time_of(k + 1), 0});
   while (!parts.empty()) {
     const Part part = parts.back();
     const absl::Status status = SolveStep(part.start, part.end, stop, state, report);
@@ -41,6 +55,15 @@ absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State
     parts.push_back({part.start, middle, part.halvings + 1});
   }
   return absl::OkStatus();
+}
+
+int32_t Stepper::PartCount(double start, double end, const State& state) const {
+  double longest = end - start;
+  for (const auto& term : model_.node_terms)
+    longest = std::min(longest, term->LongestPart(start, end, state));
+  // A NaN or a colliders' jump asks for no more than this.
+  const double parts = std::ceil((end - start) / longest);
+  return parts > 1 ? static_cast<int32_t>(std::min<double>(parts, kMaxParts)) : 1;
 }
 
 absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, State& state,
@@ -80,7 +103,9 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     const NodeTermWork work = term->EndStep(state);
     report.external_work += work.external_work;
     report.friction_dissipation += work.dissipation;
+    report.integration_dissipation += work.integration;
     stored_energy += work.stored_energy;
+    term->Renew(state);
   }
   report.contact_energy = stored_energy;
   ++report.steps;

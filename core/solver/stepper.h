@@ -23,7 +23,8 @@ class Stepper {
   // `model` must outlive the stepper.
   explicit Stepper(const Model& model);
 
-  // Moves `state` from time `start` (s) to `end`. A step that does not converge is cut in two, up
+  // Moves `state` from time `start` (s) to `end`, in more than one part where node terms need it.
+  // A part that does not converge is cut in two, up
   // to quality.max_step_halvings times. Adds to `report`. Errors: Aborted when the smallest part
   // does not converge, naming the worst node; Cancelled. After an error `state` is that of some
   // instant in between: the caller keeps a copy.
@@ -46,6 +47,8 @@ class Stepper {
   int64_t bytes() const;
 
  private:
+  // How many equal parts the node terms want a step to be taken in.
+  int32_t PartCount(double start, double end, const State& state) const;
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
   // Alternates breaking and solving until no edge fails. Adds the elastic energy lost to

@@ -52,6 +52,17 @@ std::string ReportLine(const FrameReport& report) {
                     Number(force[1]), ",", Number(force[2]), "]");
   }
   add("motion_forces", absl::StrCat("[", forces, "]"));
+  if (!report.colliders.empty()) {
+    std::string places;
+    for (const ColliderPlace& place : report.colliders) {
+      const auto& [w, x, y, z] = place.rotation;
+      absl::StrAppend(&places, places.empty() ? "" : ",", "{\"rotation\":[", Number(w), ",",
+                      Number(x), ",", Number(y), ",", Number(z), "],\"translation\":[",
+                      Number(place.translation[0]), ",", Number(place.translation[1]), ",",
+                      Number(place.translation[2]), "]}");
+    }
+    add("colliders", absl::StrCat("[", places, "]"));
+  }
   add("assembly_seconds", Number(report.assembly_seconds));
   add("linear_solve_seconds", Number(report.linear_solve_seconds));
   add("fracture_seconds", Number(report.fracture_seconds));

@@ -66,6 +66,9 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.initial_velocities.emplace_back();
   expect_adds(scene, "initial velocities");
   scene = minimal;
+  scene.colliders.emplace_back().shape = PlaneShape{};
+  expect_adds(scene, "colliders");
+  scene = minimal;
   scene.materials[0].tensile_strength = 1e5;
   expect_adds(scene, "fracture");
   scene = minimal;
@@ -130,6 +133,8 @@ TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
   EXPECT_FALSE(minimal.fracture.has_value());
   EXPECT_TRUE(minimal.motions.empty());
   EXPECT_EQ(minimal.tet_terms.size(), 1u);
+  EXPECT_TRUE(minimal.node_terms.empty());
+  EXPECT_EQ(minimal.colliders, nullptr);
   double mass = 0;
   for (const double of_node : minimal.masses) mass += of_node;
   EXPECT_NEAR(mass, 1000, 1e-9);
