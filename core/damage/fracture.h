@@ -39,9 +39,12 @@ struct EdgeStrengths {
 struct FractureSettings {
   double simultaneity = 0.9;  // edges at this share of their component's worst ratio break with it
   StressAggregation aggregation = StressAggregation::kMean;
+  // Edge-projected, a damaged tet keeps factor 1 for as long as it hangs together: others weaken
+  // it.
+  Reformulation reformulation = Reformulation::kUniform;
 };
 
-// A tet whose damage factor fell.
+// A tet whose damage factor fell, or that lost edges where tets are edge-projected.
 struct ChangedTet {
   int32_t tet;
   double previous_factor;
@@ -99,6 +102,7 @@ class EdgeFracture {
                     std::span<const Eigen::Matrix3d> effective_stress, std::span<double> stresses);
 
   // Share of its stiffness that each tet has left: 1 intact, 0 dead. Scales energy, force, Hessian.
+  // Edge-projected tets have 1 until they die.
   std::span<const double> damage_factors() const { return factors_; }
   std::span<const EdgeMask> tet_masks() const { return masks_; }
   // Nonzero for a broken edge; an edge each.

@@ -32,8 +32,14 @@ void EdgeFracture::BreakPending(std::span<const Vec3> positions, Stress effectiv
   pending_.clear();
   SortUnique(touched_tets_);
   for (const int32_t tet : touched_tets_) {
-    const bool separated = Separated(masks_[static_cast<size_t>(tet)]);
-    Weaken(tet, separated ? 0 : UnbrokenShare(tet, positions, effective_stress));
+    const auto t = static_cast<size_t>(tet);
+    if (Separated(masks_[t])) {
+      Weaken(tet, 0);
+    } else if (settings_.reformulation == Reformulation::kUniform) {
+      Weaken(tet, UnbrokenShare(tet, positions, effective_stress));
+    } else if (factors_[t] > 0) {
+      changed_.push_back({tet, factors_[t]});
+    }
   }
 
   // Deaths make orphans and hinges; hinges make deaths; orphans change no live tet. `newly_dead_`

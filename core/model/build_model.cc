@@ -10,11 +10,11 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "core/damage/edge_thresholds.h"
+#include "core/material/fibre_directions.h"
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
 #include "core/model/collider_term.h"
 #include "core/model/elastic_term.h"
-#include "core/material/fibre_directions.h"
 #include "core/model/fibre_term.h"
 #include "core/model/impurities.h"
 #include "core/model/weakened_edges.h"
@@ -273,8 +273,16 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     }
     part.settings.simultaneity = scene.fracture.simultaneity;
     part.settings.aggregation = scene.fracture.aggregation;
+    part.settings.reformulation = scene.fracture.reformulation;
     part.max_passes = scene.fracture.max_passes;
     part.client_edge = ClientEdges(*model.incidence, model.order);
+
+    // Edge-projected damage.
+    if (scene.fracture.reformulation == Reformulation::kEdgeProjected) {
+      auto term = std::make_unique<EdgeProjectedTerm>(*model.mesh, *model.incidence);
+      part.edge_projected = term.get();
+      model.tet_terms.push_back(std::move(term));
+    }
 
     // Impurities, which change its thresholds.
     if (scene.impurities && scene.impurities->model != ImpurityModel::kOff)

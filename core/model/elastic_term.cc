@@ -149,6 +149,23 @@ class ElasticTerm final : public TetTerm {
         factor * RestVolume(mesh_, tet);
   }
 
+  double TetEnergy(int64_t tet, const NodalVector& displacements) const override {
+    const int64_t place = tets_.place_of(tet);
+    if (place < 0) return 0;
+    const TetBatch& batch = tets_.batches[static_cast<size_t>(place / kLanes)];
+    const Matrix3<Double4> g = DisplacementGradient(batch, displacements.data());
+    const Double4 density = Law::Energy(g, Law::KinematicsOf(g), lame(place / kLanes));
+    return (batch.volume * density)[place % kLanes];
+  }
+
+  void AddRestModuli(int64_t tet, Matrix6& moduli) const override {
+    const int64_t place = tets_.place_of(tet);
+    if (place < 0) return;
+    const LameConstants<Double4>& of_batch = lame(place / kLanes);
+    moduli.diagonal().array() += 2 * of_batch.mu[place % kLanes];
+    moduli.topLeftCorner<3, 3>().array() += of_batch.lambda[place % kLanes];
+  }
+
  private:
   const LameConstants<Double4>& lame(int64_t batch) const {
     return lame_[static_cast<size_t>(batch * lame_stride_)];

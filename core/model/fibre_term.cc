@@ -185,6 +185,27 @@ class FibreTerm final : public TetTerm {
         factor * RestVolume(mesh_, tet);
   }
 
+  double TetEnergy(int64_t tet, const NodalVector& displacements) const override {
+    const int64_t place = tets_.place_of(tet);
+    if (place < 0) return 0;
+    const TetBatch& batch = tets_.batches[static_cast<size_t>(place / kLanes)];
+    const FibreBatch& fibres = fibres_[static_cast<size_t>(place / kLanes)];
+    const FibreStretch stretch =
+        StretchOf(batch, fibres, FibreGradient(batch, fibres), displacements.data());
+    return (0.5 * batch.volume * fibres.stiffness * stretch.excess *
+            stretch.excess)[place % kLanes];
+  }
+
+  void AddRestModuli(int64_t tet, Matrix6& moduli) const override {
+    const int64_t place = tets_.place_of(tet);
+    if (place < 0) return;
+    const FibreBatch& fibres = fibres_[static_cast<size_t>(place / kLanes)];
+    Eigen::Vector3d direction;
+    for (int i = 0; i < 3; ++i) direction[i] = fibres.direction[i][place % kLanes];
+    const Vector6 along = ToMandel(direction * direction.transpose());
+    moduli += fibres.stiffness[place % kLanes] * along * along.transpose();
+  }
+
  private:
   const TetMesh& mesh_;
   TetBatches tets_;

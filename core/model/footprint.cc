@@ -9,6 +9,7 @@
 #include "core/damage/edge_mask.h"
 #include "core/material/moduli.h"
 #include "core/model/collider_term.h"
+#include "core/model/edge_projected_term.h"
 #include "core/model/fibre_term.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/tet_batches.h"
@@ -101,6 +102,8 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
       [](const Material& material) { return material.compressive_strength.has_value(); });
   if (crushes)
     add("compressive strength", (uniform && scene.weakenings.empty() ? 1 : edges) * kDouble);
+  if (breaks && scene.fracture.reformulation == Reformulation::kEdgeProjected)
+    add("edge-projected tets", tets * EdgeProjectedTerm::TetBytes());  // at most
   if (breaks && scene.impurities && scene.impurities->model != ImpurityModel::kOff) {
     const Impurities& impurities = *scene.impurities;
     add("impurities",

@@ -11,6 +11,7 @@
 #include "core/mesh/incidence.h"
 #include "core/mesh/reorder.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/model/edge_projected_term.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/node_term.h"
 #include "core/model/prescribed_motion.h"
@@ -35,6 +36,8 @@ struct FracturePart {
   FractureSettings settings;
   int32_t max_passes = 60;           // of breaking and solving again, in a step
   std::vector<int32_t> client_edge;  // the client's id of every edge
+  // Which of the tet terms takes over damaged tets, where they are edge-projected.
+  EdgeProjectedTerm* edge_projected = nullptr;
   std::optional<ImpurityPart> impurities;
 };
 

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "core/base/bytes.h"
+#include "core/damage/edge_projection.h"
 #include "core/model/nodal_vector.h"
 
 namespace cleave {
@@ -56,6 +57,11 @@ class TetTerm {
   // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor;
   // nothing where the term does not act in it.
   virtual void SetDamageFactor(int64_t tet, double factor) = 0;
+  // The energy of one tet, J; 0 where the term does not act in it.
+  virtual double TetEnergy(int64_t tet, const NodalVector& displacements) const = 0;
+  // Adds the second derivative of a tet's energy density by Green strain at rest, Pa, in Mandel's
+  // notation (edge_projection.h), without the damage factor; nothing where the term does not act.
+  virtual void AddRestModuli(int64_t tet, Matrix6& moduli) const = 0;
 
   // What decides later steps besides displacements and damage. Restore refuses (DataLoss) what
   // cannot belong to this term, and then changes nothing.

@@ -262,6 +262,12 @@ enum class StressAggregation {
   kMax,
 };
 
+// What broken edges leave of a tet that still hangs together.
+enum class Reformulation {
+  kUniform,        // Eq. 2: all of its stress times the share that its unbroken edges carried
+  kEdgeProjected,  // an energy of the strains of its unbroken edges; for elastic materials
+};
+
 // Edges by their nodes: both ends are in the set.
 struct EdgesOfNodes {
   std::string node_set;
@@ -283,6 +289,7 @@ struct Fracture {
   double simultaneity = 0.9;  // edges at this share of the worst failure ratio break with it
   FractureStress stress = FractureStress::kMatrix;
   StressAggregation aggregation = StressAggregation::kMean;
+  Reformulation reformulation = Reformulation::kUniform;
 };
 
 struct Timing {

@@ -185,6 +185,14 @@ void CheckImpurities(const Impurities& impurities, const std::set<std::string>& 
 void CheckSettings(const Scene& scene, Faults& faults, Checker& check) {
   check.Count("fracture.max_passes", scene.fracture.max_passes, 1, limits::kMaxPasses);
   check.Above("fracture.simultaneity", scene.fracture.simultaneity, 0, 1);
+  if (scene.fracture.reformulation == Reformulation::kEdgeProjected) {
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+      if (!scene.materials[i].plasticity.has_value()) continue;
+      faults.Error("fracture.reformulation",
+                   absl::StrCat("edge-projected damage is elastic, but ",
+                                At("materials", i, "plasticity"), " is set: use the uniform one"));
+    }
+  }
 
   const Timing& timing = scene.timing;
   check.Within("timing.frames_per_second", timing.frames_per_second, limits::kMinFramesPerSecond,

@@ -185,6 +185,7 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.fracture.simultaneity);
   out.Put(static_cast<uint32_t>(scene.fracture.stress));
   out.Put(static_cast<uint32_t>(scene.fracture.aggregation));
+  out.Put(static_cast<uint32_t>(scene.fracture.reformulation));
   out.Put<uint64_t>(scene.weakenings.size());
   for (const Weakening& weakening : scene.weakenings) {
     out.Put<uint64_t>(weakening.edges.index());

@@ -40,7 +40,8 @@ Breaking::Breaking(const Model& model)
       stresses_(static_cast<size_t>(model.tet_count())) {
   // Edges without strength are cut before anything moves.
   if (fracture_.broken_edge_count() > 0) {
-    ApplyDamage();
+    // At rest nothing has energy that could rise.
+    ApplyDamage(std::vector<double>(ProjectedTets().size(), 1.0));
     ResetGraph();
   }
   Mark();
@@ -57,14 +58,31 @@ int64_t Breaking::BreakPass(const NodalVector& displacements) {
   });
   for (const auto& term : model_.tet_terms) term->AddEffectiveStress(displacements, stresses_);
   const PassResult result = fracture_.BreakPass(positions_, stresses_);
-  for (const ChangedTet& changed : result.changed_tets) {
-    for (const auto& term : model_.tet_terms) {
-      term->SetDamageFactor(changed.tet,
-                            fracture_.damage_factors()[static_cast<size_t>(changed.tet)]);
-    }
-  }
+  for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
   if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   return static_cast<int64_t>(result.broken_edges.size());
+}
+
+void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
+  const double factor = fracture_.damage_factors()[static_cast<size_t>(tet)];
+  EdgeProjectedTerm* const projected = model_.fracture->edge_projected;
+  if (projected == nullptr || factor == 0) {
+    for (const auto& term : model_.tet_terms) term->SetDamageFactor(tet, factor);
+    return;
+  }
+  double energy = 0;
+  for (const auto& term : model_.tet_terms) energy += term->TetEnergy(tet, displacements);
+  for (const auto& term : model_.tet_terms) {
+    if (term.get() != projected) term->SetDamageFactor(tet, 0);
+  }
+  projected->Weaken(tet, fracture_.tet_masks()[static_cast<size_t>(tet)], RestModuli(tet), energy,
+                    displacements);
+}
+
+Matrix6 Breaking::RestModuli(int32_t tet) const {
+  Matrix6 moduli = Matrix6::Zero();
+  for (const auto& term : model_.tet_terms) term->AddRestModuli(tet, moduli);
+  return moduli;
 }
 
 void Breaking::Mark() {
@@ -72,25 +90,49 @@ void Breaking::Mark() {
   if (!mark_.empty() && marked_broken_edges_ == fracture_.broken_edge_count()) return;
   mark_.clear();
   ByteWriter out(mark_);
-  fracture_.Save(out);
+  Save(out);
   marked_broken_edges_ = fracture_.broken_edge_count();
 }
 
 absl::Status Breaking::RollBack() {
   if (marked_broken_edges_ == fracture_.broken_edge_count()) return absl::OkStatus();
   ByteReader in(mark_);
-  CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
-  ApplyDamage();
-  ResetGraph();
-  return absl::OkStatus();
+  return Load(in);
+}
+
+void Breaking::Save(ByteWriter& out) const {
+  fracture_.Save(out);
+  if (model_.fracture->edge_projected != nullptr)
+    out.PutVector(model_.fracture->edge_projected->betas());
 }
 
 absl::Status Breaking::Restore(ByteReader& in) {
-  CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
-  ApplyDamage();
-  ResetGraph();
+  std::string before;
+  ByteWriter out(before);
+  Save(out);
+  const absl::Status status = Load(in);
+  if (!status.ok()) {
+    ByteReader again(before);
+    CLEAVE_RETURN_IF_ERROR(Load(again));
+    return status;
+  }
   mark_.clear();
   Mark();
+  return absl::OkStatus();
+}
+
+absl::Status Breaking::Load(ByteReader& in) {
+  CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
+  std::vector<double> betas;
+  if (model_.fracture->edge_projected != nullptr) {
+    betas = in.GetVector<double>();
+    const bool in_range =
+        std::all_of(betas.begin(), betas.end(), [](double beta) { return beta >= 0 && beta <= 1; });
+    if (!in.ok() || !in_range || betas.size() != ProjectedTets().size())
+      return absl::DataLossError("fracture state: what is left of tets contradicts their edges");
+  }
+  ApplyDamage(betas);
+  ResetGraph();
   return absl::OkStatus();
 }
 
@@ -102,11 +144,31 @@ void Breaking::ResetGraph() {
   fracture_.LowerThresholds(edges);
 }
 
-void Breaking::ApplyDamage() {
+std::vector<int32_t> Breaking::ProjectedTets() const {
+  std::vector<int32_t> tets;
+  if (model_.fracture->edge_projected == nullptr) return tets;
+  const auto masks = fracture_.tet_masks();
+  for (size_t tet = 0; tet < masks.size(); ++tet) {
+    if (masks[tet] != 0 && fracture_.damage_factors()[tet] > 0)
+      tets.push_back(static_cast<int32_t>(tet));
+  }
+  return tets;
+}
+
+void Breaking::ApplyDamage(std::span<const double> betas) {
   const auto factors = fracture_.damage_factors();
   for (const auto& term : model_.tet_terms) {
     for (size_t tet = 0; tet < factors.size(); ++tet)
       term->SetDamageFactor(static_cast<int64_t>(tet), factors[tet]);
+  }
+  EdgeProjectedTerm* const projected = model_.fracture->edge_projected;
+  if (projected == nullptr) return;
+  projected->Clear();
+  const std::vector<int32_t> tets = ProjectedTets();
+  for (size_t k = 0; k < tets.size(); ++k) {
+    const auto tet = static_cast<size_t>(tets[k]);
+    for (const auto& term : model_.tet_terms) term->SetDamageFactor(tets[k], 0);
+    projected->Put(tets[k], fracture_.tet_masks()[tet], RestModuli(tets[k]), betas[k]);
   }
 }
 

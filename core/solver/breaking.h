@@ -39,14 +39,22 @@ class Breaking {
   int64_t ComponentCount() { return fracture_.ComponentCount(); }
   const EdgeFracture& fracture() const { return fracture_; }
 
-  void Save(ByteWriter& out) const { fracture_.Save(out); }
+  void Save(ByteWriter& out) const;
   // Refuses (DataLoss) what cannot belong to this mesh, and then changes nothing.
   absl::Status Restore(ByteReader& in);
 
   int64_t bytes() const;
 
  private:
-  void ApplyDamage();
+  // Hands the damage of a tet to the terms, at the displacements of its break.
+  void Weaken(int32_t tet, const NodalVector& displacements);
+  // Hands all damage to the terms; `betas` are those of edge-projected tets, by tet.
+  void ApplyDamage(std::span<const double> betas);
+  // Tets that are edge-projected, ascending.
+  std::vector<int32_t> ProjectedTets() const;
+  Matrix6 RestModuli(int32_t tet) const;
+
+  absl::Status Load(ByteReader& in);
 
   // The graph's bonds are the unbroken edges.
   void ResetGraph();

@@ -307,6 +307,10 @@ v1::Scene MessageFromScene(const Scene& scene) {
   message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
                                                   ? v1::STRESS_AGGREGATION_MAX
                                                   : v1::STRESS_AGGREGATION_MEAN);
+  message.mutable_fracture()->set_reformulation(scene.fracture.reformulation ==
+                                                        Reformulation::kEdgeProjected
+                                                    ? v1::REFORMULATION_EDGE_PROJECTED
+                                                    : v1::REFORMULATION_UNIFORM);
   if (scene.impurities.has_value())
     WriteImpurities(*scene.impurities, message.mutable_impurities());
   WriteSettings(scene, message);

@@ -85,6 +85,11 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   EXPECT_EQ(Names(Plan(scene)).back(), "impurities");
   EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
   scene = minimal;
+  scene.fracture.reformulation = Reformulation::kEdgeProjected;
+  EXPECT_EQ(Plan(scene).total_bytes, base.total_bytes);
+  scene.materials[0].tensile_strength = 1e5;
+  EXPECT_EQ(Names(Plan(scene)).back(), "edge-projected tets");
+  scene = minimal;
   scene.materials[0].compressive_strength = 1e5;
   EXPECT_THAT(Names(Plan(scene)), Contains("fracture"));
   EXPECT_EQ(Names(Plan(scene)).back(), "compressive strength");

@@ -209,6 +209,11 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
        }},
       {"fracture.max_passes", [](Scene& s) { s.fracture.max_passes = 0; }},
       {"fracture.simultaneity", [](Scene& s) { s.fracture.simultaneity = 1.5; }},
+      {"fracture.reformulation",
+       [](Scene& s) {
+         s.materials[0].plasticity = Plasticity{1e4, 1e5};
+         s.fracture.reformulation = Reformulation::kEdgeProjected;
+       }},
       {"timing.frames_per_second", [](Scene& s) { s.timing.frames_per_second = 0; }},
       {"timing.frame_count", [](Scene& s) { s.timing.frame_count = -1; }},
       {"timing.steps_per_frame", [](Scene& s) { s.timing.steps_per_frame = 0; }},

@@ -61,12 +61,7 @@ constexpr char kEveryField[] = R"pb(
       }
       strength_ratio: 3
     }
-    plasticity {
-      yield_stress: 1e6
-      hardening: 2e6
-      flow_rate: 50
-      failure_strain: 0.25
-    }
+    plasticity { yield_stress: 1e6 hardening: 2e6 flow_rate: 50 failure_strain: 0.25 }
   }
   node_sets {
     name: "grip"
@@ -114,6 +109,7 @@ constexpr char kEveryField[] = R"pb(
     simultaneity: 0.8
     stress: FRACTURE_STRESS_TOTAL
     aggregation: STRESS_AGGREGATION_MAX
+    reformulation: REFORMULATION_EDGE_PROJECTED
   }
   timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
   quality {
