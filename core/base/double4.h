@@ -15,7 +15,6 @@ namespace cleave {
 typedef double Double4 __attribute__((vector_size(32)));
 typedef int64_t Int64x4 __attribute__((vector_size(32)));
 typedef float Float4 __attribute__((vector_size(16)));
-inline constexpr int kLanes = 4;
 
 inline Double4 Splat(double value) { return Double4{value, value, value, value}; }
 
@@ -32,7 +31,14 @@ inline Double4 Max(Double4 a, Double4 b) { return a > b ? a : b; }
 inline Double4 Abs(Double4 v) { return v < 0 ? -v : v; }
 inline double Sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline double Dot(Double4 a, Double4 b) { return Sum(a * b); }
-inline bool Any(Int64x4 mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) != 0; }
+inline bool Any(Int64x4 mask) {
+#ifdef __AVX__
+  const auto bits = reinterpret_cast<__m256i>(mask);
+  return _mm256_testz_si256(bits, bits) == 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
+}
 
 // Four floats from anywhere in memory.
 inline Float4 LoadFloat4(const float* source) {
@@ -64,11 +70,25 @@ Double4 SplatLane(Double4 v) {
   return __builtin_shuffle(v, Int64x4{kLane, kLane, kLane, kLane});
 }
 
+template <int kLane>
+Float4 SplatLane(Float4 v) {
+  typedef int32_t Int32x4 __attribute__((vector_size(16)));
+  return __builtin_shuffle(v, Int32x4{kLane, kLane, kLane, kLane});
+}
+
 // a * b + c, rounded once where the processor can: the same bits for every run of a build.
 inline Double4 MultiplyAdd(Double4 a, Double4 b, Double4 c) {
 #ifdef __FMA__
   return reinterpret_cast<Double4>(_mm256_fmadd_pd(
       reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b), reinterpret_cast<__m256d>(c)));
+#else
+  return a * b + c;
+#endif
+}
+inline Float4 MultiplyAdd(Float4 a, Float4 b, Float4 c) {
+#ifdef __FMA__
+  return reinterpret_cast<Float4>(_mm_fmadd_ps(
+      reinterpret_cast<__m128>(a), reinterpret_cast<__m128>(b), reinterpret_cast<__m128>(c)));
 #else
   return a * b + c;
 #endif

@@ -14,31 +14,36 @@ namespace cleave {
 // with singular values s, the smallest negative in an inverted tet. Finite everywhere; the stress
 // kinks where s_i + s_j = 0, deep in inversion. Source: method note, section 5.
 struct CorotatedLinear {
-  static SignedSvd KinematicsOf(const Matrix3<Double4>& g) { return ComputeSvd(g); }
+  template <typename T>
+  static SignedSvd<T> KinematicsOf(const Matrix3<T>& g) {
+    return ComputeSvd(g);
+  }
 
   // J/m^3.
-  static Double4 Energy(const Matrix3<Double4>&, const SignedSvd& svd,
-                        const LameConstants<Double4>& lame) {
-    const Double4* d = svd.strain;
-    const Double4 trace = d[0] + d[1] + d[2];
+  template <typename T>
+  static T Energy(const Matrix3<T>&, const SignedSvd<T>& svd, const LameConstants<T>& lame) {
+    const T* d = svd.strain;
+    const T trace = d[0] + d[1] + d[2];
     return lame.mu * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + 0.5 * lame.lambda * trace * trace;
   }
 
   // First Piola-Kirchhoff stress, Pa.
-  static Matrix3<Double4> Stress(const Matrix3<Double4>&, const SignedSvd& svd,
-                                 const LameConstants<Double4>& lame) {
-    const Double4* d = svd.strain;
-    const Double4 pressure = lame.lambda * (d[0] + d[1] + d[2]);
-    const Double4 principal[3] = {pressure + 2.0 * lame.mu * d[0], pressure + 2.0 * lame.mu * d[1],
-                                  pressure + 2.0 * lame.mu * d[2]};
+  template <typename T>
+  static Matrix3<T> Stress(const Matrix3<T>&, const SignedSvd<T>& svd,
+                           const LameConstants<T>& lame) {
+    const T* d = svd.strain;
+    const T pressure = lame.lambda * (d[0] + d[1] + d[2]);
+    const T principal[3] = {pressure + 2.0 * lame.mu * d[0], pressure + 2.0 * lame.mu * d[1],
+                            pressure + 2.0 * lame.mu * d[2]};
     return FromPrincipal(svd, principal);
   }
 
   // Second derivative at the singular values, not projected.
-  static StiffnessSpectrum Spectrum(const SignedSvd& svd, const LameConstants<Double4>& lame) {
-    StiffnessSpectrum spectrum;
-    const Double4 pressure = lame.lambda * (svd.strain[0] + svd.strain[1] + svd.strain[2]);
-    const Double4 cap = SkewStiffnessCap(lame);
+  template <typename T>
+  static StiffnessSpectrum<T> Spectrum(const SignedSvd<T>& svd, const LameConstants<T>& lame) {
+    StiffnessSpectrum<T> spectrum;
+    const T pressure = lame.lambda * (svd.strain[0] + svd.strain[1] + svd.strain[2]);
+    const T cap = SkewStiffnessCap(lame);
     for (int k = 0; k < 3; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;
       spectrum.axial[k][k] = lame.lambda + 2.0 * lame.mu;

@@ -13,7 +13,7 @@ namespace cleave {
 //   psi = mu E:E + lambda/2 (tr E)^2,   P = F (2 mu E + lambda tr(E) I)
 //
 // A polynomial in F, so smooth everywhere, but the energy sees no sign of J and its resistance to
-// crushing fades below a stretch of 1/sqrt(3). Written in G = F - I; T is double or Double4.
+// crushing fades below a stretch of 1/sqrt(3). Written in G = F - I; T is a number or a batch.
 // Source: method note, section 1 (C is linear in squared lengths) and the textbook form.
 struct StVenantKirchhoff {
   template <typename T>
@@ -62,20 +62,21 @@ struct StVenantKirchhoff {
   }
 
   // Second derivative at the singular values, not projected.
-  static StiffnessSpectrum Spectrum(const SignedSvd& svd, const LameConstants<Double4>& lame) {
-    StiffnessSpectrum spectrum;
-    const Double4* s = svd.s;
-    Double4 green[3];
+  template <typename T>
+  static StiffnessSpectrum<T> Spectrum(const SignedSvd<T>& svd, const LameConstants<T>& lame) {
+    StiffnessSpectrum<T> spectrum;
+    const T* s = svd.s;
+    T green[3];
     for (int k = 0; k < 3; ++k) green[k] = 0.5 * svd.strain[k] * (s[k] + 1.0);
-    const Double4 pressure = lame.lambda * (green[0] + green[1] + green[2]);
+    const T pressure = lame.lambda * (green[0] + green[1] + green[2]);
     for (int k = 0; k < 3; ++k) {
       const int i = (k + 1) % 3, j = (k + 2) % 3;
-      const Double4 square = s[k] * s[k];
+      const T square = s[k] * s[k];
       spectrum.axial[k][k] = pressure + 2.0 * lame.mu * (green[k] + square) + lame.lambda * square;
-      const Double4 product = s[i] * s[j];
+      const T product = s[i] * s[j];
       spectrum.axial[i][j] = spectrum.axial[j][i] = lame.lambda * product;
       // (psi_i -+ psi_j) / (s_i -+ s_j), the polynomials divided out.
-      const Double4 even = pressure + lame.mu * (s[i] * s[i] + s[j] * s[j] - 1.0);
+      const T even = pressure + lame.mu * (s[i] * s[i] + s[j] * s[j] - 1.0);
       spectrum.symmetric[k] = even + lame.mu * product;
       spectrum.skew[k] = even - lame.mu * product;
     }

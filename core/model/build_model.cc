@@ -15,7 +15,6 @@
 #include "core/mesh/tet_geometry.h"
 #include "core/model/collider_term.h"
 #include "core/model/elastic_term.h"
-#include "core/model/fibre_term.h"
 #include "core/model/impurities.h"
 #include "core/model/weakened_edges.h"
 #include "core/scene/selection.h"
@@ -39,19 +38,35 @@ std::vector<int32_t> NodesOf(const std::string& name, const Scene& scene, const 
   return nodes;
 }
 
-// The elastic laws that the materials follow, each once.
-std::set<ElasticLaw> LawsOf(const std::vector<Material>& materials) {
-  std::set<ElasticLaw> laws;
-  for (const Material& material : materials) laws.insert(material.law);
-  return laws;
+// How many families of fibres stiffen a material.
+size_t StiffFamilies(const Material& material) {
+  return static_cast<size_t>(
+      std::count_if(material.fibres.begin(), material.fibres.end(),
+                    [](const FibreFamily& family) { return family.stiffness > 0; }));
 }
 
-// The tets whose material follows `law`, ascending.
+// What elastic passes are made for: tets of one kind share a term.
+struct ElasticKind {
+  ElasticLaw law;
+  size_t families;  // of fibres
+  auto operator<=>(const ElasticKind&) const = default;
+};
+
+ElasticKind KindOf(const Material& material) { return {material.law, StiffFamilies(material)}; }
+
+// The kinds of the materials, each once.
+std::set<ElasticKind> KindsOf(const std::vector<Material>& materials) {
+  std::set<ElasticKind> kinds;
+  for (const Material& material : materials) kinds.insert(KindOf(material));
+  return kinds;
+}
+
+// The tets whose material is of that kind, ascending.
 std::vector<int32_t> TetsOf(const std::vector<Material>& materials,
-                            const std::vector<int32_t>& material_of, ElasticLaw law) {
+                            const std::vector<int32_t>& material_of, const ElasticKind& kind) {
   std::vector<int32_t> tets;
   for (size_t tet = 0; tet < material_of.size(); ++tet) {
-    if (materials[static_cast<size_t>(material_of[tet])].law == law)
+    if (KindOf(materials[static_cast<size_t>(material_of[tet])]) == kind)
       tets.push_back(static_cast<int32_t>(tet));
   }
   return tets;
@@ -72,44 +87,66 @@ std::vector<LameConstants<double>> LameOf(const std::vector<Material>& materials
   return of_tet;
 }
 
-// The k-th family of fibres of every material that has as many, in tets that it stiffens. What it
-// does for strength is added to `directional`.
-FibreFamilyPart FamilyOf(const std::vector<Material>& materials,
-                         const std::vector<int32_t>& material_of, size_t k, const TetMesh& mesh,
-                         const MeshOrder& order, std::vector<DirectionalStrength>& directional) {
-  std::vector<std::vector<int32_t>> tets_of(materials.size());
+// Directions of all families of a material's fibres in its tets.
+struct MaterialFibres {
+  std::vector<int32_t> tets;                  // ascending
+  std::vector<std::vector<Vec3>> directions;  // [family], a tet each
+};
+
+std::vector<MaterialFibres> FibresOf(const std::vector<Material>& materials,
+                                     const std::vector<int32_t>& material_of, const TetMesh& mesh,
+                                     const MeshOrder& order) {
+  std::vector<MaterialFibres> fibres(materials.size());
   for (size_t tet = 0; tet < material_of.size(); ++tet) {
     const auto material = static_cast<size_t>(material_of[tet]);
-    if (k < materials[material].fibres.size())
-      tets_of[material].push_back(static_cast<int32_t>(tet));
+    if (!materials[material].fibres.empty())
+      fibres[material].tets.push_back(static_cast<int32_t>(tet));
   }
-  struct Fibre {
-    int32_t tet;
-    Vec3 direction;
-    double stiffness;
-  };
-  std::vector<Fibre> fibres;
   for (size_t m = 0; m < materials.size(); ++m) {
-    if (tets_of[m].empty()) continue;
-    const FibreFamily& family = materials[m].fibres[k];
-    std::vector<int32_t> old_tets = tets_of[m];
+    std::vector<int32_t> old_tets = fibres[m].tets;
+    if (old_tets.empty()) continue;
     for (int32_t& tet : old_tets) tet = order.old_tet[static_cast<size_t>(tet)];
-    const std::vector<Vec3> directions = FibreDirections(family.direction, mesh, old_tets);
-    for (size_t i = 0; i < directions.size(); ++i) {
-      if (family.stiffness > 0) fibres.push_back({tets_of[m][i], directions[i], family.stiffness});
-      if (family.strength_ratio > 1)
-        directional.push_back({tets_of[m][i], directions[i], family.strength_ratio});
-    }
+    for (const FibreFamily& family : materials[m].fibres)
+      fibres[m].directions.push_back(FibreDirections(family.direction, mesh, old_tets));
   }
-  std::sort(fibres.begin(), fibres.end(),
-            [](const Fibre& a, const Fibre& b) { return a.tet < b.tet; });
+  return fibres;
+}
+
+// The k-th family that stiffens each of the tets, which all have as many.
+FibreFamilyPart StiffFamily(const std::vector<Material>& materials,
+                            const std::vector<int32_t>& material_of,
+                            const std::vector<MaterialFibres>& fibres,
+                            const std::vector<int32_t>& tets, size_t k) {
   FibreFamilyPart part;
-  for (const Fibre& fibre : fibres) {
-    part.tets.push_back(fibre.tet);
-    part.directions.push_back(fibre.direction);
-    part.stiffness.push_back(fibre.stiffness);
+  std::vector<size_t> next(materials.size(), 0);
+  for (const int32_t tet : tets) {
+    const auto m = static_cast<size_t>(material_of[static_cast<size_t>(tet)]);
+    size_t family = 0;
+    for (size_t stiff = 0;; ++family) {
+      if (materials[m].fibres[family].stiffness > 0 && stiff++ == k) break;
+    }
+    part.directions.push_back(fibres[m].directions[family][next[m]++]);
+    part.stiffness.push_back(materials[m].fibres[family].stiffness);
   }
   return part;
+}
+
+// What fibres do for the strength of edges.
+std::vector<DirectionalStrength> DirectionalStrengths(const std::vector<Material>& materials,
+                                                      const std::vector<MaterialFibres>& fibres) {
+  std::vector<DirectionalStrength> strengths;
+  size_t families = 0;
+  for (const Material& material : materials) families = std::max(families, material.fibres.size());
+  for (size_t k = 0; k < families; ++k) {
+    for (size_t m = 0; m < materials.size(); ++m) {
+      if (k >= fibres[m].directions.size() || materials[m].fibres[k].strength_ratio <= 1) continue;
+      for (size_t i = 0; i < fibres[m].tets.size(); ++i) {
+        strengths.push_back(
+            {fibres[m].tets[i], fibres[m].directions[k][i], materials[m].fibres[k].strength_ratio});
+      }
+    }
+  }
+  return strengths;
 }
 
 double MeanEdgeLength(const TetMesh& mesh, const Incidence& incidence) {
@@ -188,29 +225,25 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       model.masses[static_cast<size_t>(node)] += density * volume / 4;
   }
 
-  // Elasticity, a term a law.
-  for (const ElasticLaw law : LawsOf(scene.materials)) {
-    std::vector<int32_t> tets = TetsOf(scene.materials, material_of, law);
-    if (tets.empty()) continue;
-    std::vector<LameConstants<double>> lame = LameOf(scene.materials, material_of, tets);
-    if (tets.size() == material_of.size()) tets.clear();  // all of the mesh
-    model.tet_terms.push_back(
-        MakeElasticTerm(law, *model.mesh, *model.incidence, std::move(tets), std::move(lame)));
+  // Elasticity and fibres, a term for every law and number of families.
+  const std::vector<MaterialFibres> fibres =
+      FibresOf(scene.materials, material_of, mesh, model.order);
+  for (const ElasticKind& kind : KindsOf(scene.materials)) {
+    ElasticPart part;
+    part.law = kind.law;
+    part.tets = TetsOf(scene.materials, material_of, kind);
+    if (part.tets.empty()) continue;
+    part.lame = LameOf(scene.materials, material_of, part.tets);
+    for (size_t k = 0; k < kind.families; ++k) {
+      part.fibres.push_back(StiffFamily(scene.materials, material_of, fibres, part.tets, k));
+    }
+    if (part.tets.size() == material_of.size()) part.tets.clear();  // all of the mesh
+    model.tet_terms.push_back(MakeElasticTerm(scene.quality.precision, *model.mesh,
+                                              *model.incidence, std::move(part),
+                                              scene.fracture.stress));
   }
-
-  // Fibres, a term a family. Families of different materials that are the first of theirs, the
-  // second and so on, share one.
-  std::vector<DirectionalStrength> directional;
-  size_t families = 0;
-  for (const Material& material : scene.materials)
-    families = std::max(families, material.fibres.size());
-  for (size_t k = 0; k < families; ++k) {
-    const FibreFamilyPart family =
-        FamilyOf(scene.materials, material_of, k, mesh, model.order, directional);
-    if (family.tets.empty()) continue;
-    model.tet_terms.push_back(
-        MakeFibreTerm(*model.mesh, *model.incidence, family, scene.fracture.stress));
-  }
+  const std::vector<DirectionalStrength> directional =
+      DirectionalStrengths(scene.materials, fibres);
 
   model.quality = scene.quality;
 

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
-#include "core/material/moduli.h"
 #include "core/model/collider_term.h"
 #include "core/model/edge_projected_term.h"
-#include "core/model/fibre_term.h"
+#include "core/model/elastic_term.h"
 #include "core/model/nodal_vector.h"
-#include "core/model/tet_batches.h"
 
 namespace cleave {
 namespace {
@@ -21,6 +20,7 @@ constexpr int64_t kInt = sizeof(int32_t);
 constexpr int64_t kDouble = sizeof(double);
 constexpr int64_t kVec3 = sizeof(Vec3);
 constexpr int64_t kNodal = sizeof(Double4);
+constexpr int64_t kMostLanes = 8;
 
 // Measured by tests/bench on an EPYC core at 2.6 GHz, s and iterations.
 constexpr double kNewtonSecondsPerTet = 0.2e-6;    // forces, stiffness and preconditioner
@@ -40,25 +40,32 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   };
 
   // Every scene.
-  const int64_t batches = (tets + kLanes - 1) / kLanes;
   add("mesh", nodes * kVec3 + tets * 4 * kInt + 2 * (nodes + tets) * kInt);
   add("incidence", edges * 2 * kInt + tets * 6 * kInt +  // edges, edges of tets
                        (nodes + 1 + 2 * edges) * kInt +  // edges of nodes
                        (nodes + 1 + 4 * tets) * kInt +   // tets of nodes
                        (edges + 1 + 6 * tets) * kInt);   // tets of edges
   const bool uniform = scene.materials.size() <= 1;
-  std::set<ElasticLaw> laws;
-  for (const Material& material : scene.materials) laws.insert(material.law);
-  const auto more_laws = static_cast<int64_t>(std::max<size_t>(laws.size(), 1)) - 1;
-  const int64_t elastic_batches = batches + more_laws;  // each law's last batch may be part empty
+  const Precision precision = scene.quality.precision;
+  std::set<std::pair<ElasticLaw, size_t>> kinds;  // of elastic terms, as in BuildModel
+  size_t families = 0;
+  for (const Material& material : scene.materials) {
+    size_t stiff = 0;
+    for (const FibreFamily& family : material.fibres) stiff += family.stiffness > 0;
+    kinds.insert({material.law, stiff});
+    families = std::max(families, stiff);
+  }
+  // The last batch of each kind may be part empty.
+  const auto more_kinds = static_cast<int64_t>(std::max<size_t>(kinds.size(), 1)) - 1;
+  const int64_t elastic_tets = tets + more_kinds * kMostLanes;
   add("elasticity",
-      elastic_batches * static_cast<int64_t>(sizeof(TetBatch)) +
-          (uniform ? 1 : elastic_batches) * static_cast<int64_t>(sizeof(LameConstants<Double4>)) +
-          (more_laws > 0 ? tets * kInt : 0));
+      ElasticTermBytes(precision, elastic_tets, uniform) + (more_kinds > 0 ? tets * kInt : 0));
   add("state", nodes * (kDouble + 4 * kNodal + kVec3));  // masses, now and before, positions
   add("stiffness matrix", 18 * (edges + 1) * static_cast<int64_t>(sizeof(float)) +
                               2 * (nodes + 1) * kInt + 3 * edges * kInt);
-  add("solver", nodes * (12 * kNodal + kDouble));
+  // In float the vectors of linear solves take half, but there is one more.
+  add("solver",
+      nodes * (24 - (precision == Precision::kFloat ? 3 : 0)) * kNodal / 2 + nodes * kDouble);
 
   // What the scene adds.
   if (scene.gravity) add("gravity", 0);
@@ -80,14 +87,14 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     add("colliders", bytes);
   }
   const bool breaks = CanBreak(scene);
-  size_t families = 0;
   bool directional = false;
   for (const Material& material : scene.materials) {
-    families = std::max(families, material.fibres.size());
     for (const FibreFamily& family : material.fibres)
       directional = directional || family.strength_ratio > 1;
   }
-  if (families > 0) add("fibres", static_cast<int64_t>(families) * FibreTermBytes(tets));
+  if (families > 0) {
+    add("fibres", static_cast<int64_t>(families) * FibreFamilyBytes(precision, elastic_tets));
+  }
   if (breaks) {
     add("fracture",
         (uniform && !directional && scene.weakenings.empty() ? 1 : edges) * kDouble +

@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace cleave {
@@ -25,20 +27,23 @@ double RestVolume(const TetMesh& mesh, int64_t tet) {
   return std::abs(RestEdges(mesh, nodes).determinant()) / 6;
 }
 
-int64_t TetBatches::place_of(int64_t tet) const {
+template <typename T>
+int64_t TetBatches<T>::place_of(int64_t tet) const {
   if (tets.empty()) return tet;
   const auto found = std::lower_bound(tets.begin(), tets.end(), tet);
   return found != tets.end() && *found == tet ? found - tets.begin() : -1;
 }
 
-TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
-                           std::vector<int32_t> tets) {
-  TetBatches result;
+template <typename T>
+TetBatches<T> BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
+                              std::vector<int32_t> tets) {
+  constexpr int64_t kLanes = TetBatches<T>::kLanes;
+  constexpr int64_t kChunk = TetBatches<T>::kChunkBatches * kLanes;
+  TetBatches<T> result;
   result.tets = std::move(tets);
   result.tet_count =
       result.tets.empty() ? mesh.tet_count() : static_cast<int64_t>(result.tets.size());
   result.batches.resize(static_cast<size_t>((result.tet_count + kLanes - 1) / kLanes));
-  constexpr int64_t kChunk = TetBatches::kChunkBatches * kLanes;
   if (result.tets.empty()) {
     result.coloring = ColorChunks(mesh.tets, mesh.node_count(), kChunk);
   } else {
@@ -46,9 +51,18 @@ TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
     for (const int32_t tet : result.tets) chosen.push_back(mesh.tets[static_cast<size_t>(tet)]);
     result.coloring = ColorChunks(chosen, mesh.node_count(), kChunk);
   }
-  ParallelFor(static_cast<int64_t>(result.batches.size()), 256, [&](int64_t begin, int64_t end) {
+  if constexpr (std::is_same_v<T, Float8>) {
+    double volume = 0;
+    for (int64_t place = 0; place < result.tet_count; ++place)
+      volume += RestVolume(mesh, result.tet_at(place));
+    result.length_unit =
+        std::exp2(std::ilogb(std::cbrt(volume / static_cast<double>(result.tet_count))));
+  }
+  const double length_unit = result.length_unit;
+  using Scalar = typename Lanes<T>::Scalar;
+  ParallelFor(result.batch_count(), 256, [&](int64_t begin, int64_t end) {
     for (int64_t b = begin; b < end; ++b) {
-      TetBatch& batch = result.batches[static_cast<size_t>(b)];
+      TetBatch<T>& batch = result.batches[static_cast<size_t>(b)];
       for (size_t lane = 0; lane < kLanes; ++lane) {
         // Lanes past the last tet repeat it with no volume.
         const int64_t place = b * kLanes + static_cast<int64_t>(lane);
@@ -64,16 +78,23 @@ TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
               batch.edges[k][lane] = edge;
           }
         }
-        const Eigen::Matrix3d inverse = RestEdges(mesh, nodes).inverse();
+        const Eigen::Matrix3d inverse = RestEdges(mesh, nodes).inverse() * length_unit;
         for (int vertex = 0; vertex < 3; ++vertex) {
           for (int axis = 0; axis < 3; ++axis)
-            batch.gradient[vertex][axis][lane] = inverse(vertex, axis);
+            batch.gradient(vertex, axis)[lane] = static_cast<Scalar>(inverse(vertex, axis));
         }
-        batch.volume[lane] = place < result.tet_count ? RestVolume(mesh, tet) : 0;
+        const double volume = place < result.tet_count ? RestVolume(mesh, tet) : 0;
+        batch.volume[lane] = static_cast<Scalar>(volume / std::pow(length_unit, 3));
       }
     }
   });
   return result;
 }
+
+template struct TetBatches<Double4>;
+template struct TetBatches<Float8>;
+template TetBatches<Double4> BuildTetBatches(const TetMesh&, const Incidence&,
+                                             std::vector<int32_t>);
+template TetBatches<Float8> BuildTetBatches(const TetMesh&, const Incidence&, std::vector<int32_t>);
 
 }  // namespace cleave

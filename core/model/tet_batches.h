@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/double4.h"
+#include "core/base/lanes.h"
 #include "core/base/matrix3.h"
 #include "core/base/parallel.h"
 #include "core/mesh/incidence.h"
@@ -15,78 +15,123 @@
 
 namespace cleave {
 
-// Four tets side by side. Their vertices are sorted by node id (the shape functions do not care),
-// so that every local edge runs from its smaller to its larger node.
+// As many tets side by side as T has lanes. Their vertices are sorted by node id (the shape
+// functions do not care), so that every local edge runs from its smaller to its larger node.
+template <typename T>
 struct TetBatch {
-  std::array<std::array<int32_t, kLanes>, 4> nodes;  // [vertex][lane]
-  std::array<std::array<int32_t, kLanes>, 6> edges;  // [kTetEdges][lane]
-  Double4 gradient[3][3];  // 1/m, of the shape functions of vertices 1 to 3, [vertex - 1][axis]
-  Double4 volume;          // m^3, rest volume times damage factor; 0 in lanes that hold no tet
+  template <size_t kCount>
+  using Ids = std::array<std::array<int32_t, Lanes<T>::kCount>, kCount>;
+
+  Ids<4> nodes;  // [vertex][lane]
+  Ids<6> edges;  // [kTetEdges][lane]
+  Matrix3<T>
+      gradient;  // 1/length_unit, of the shape functions of vertices 1 to 3, (vertex - 1, axis)
+  T volume;      // length_unit^3, rest volume times damage factor; 0 in lanes that hold no tet
 };
 
 // Tets of a mesh in batches, in order, and the chunks in which passes over them run.
+template <typename T>
 struct TetBatches {
+  static constexpr int64_t kLanes = Lanes<T>::kCount;
   // A chunk's nodes and blocks stay within the first-level cache, and ten thousand tets still make
   // work for a dozen threads.
-  static constexpr int64_t kChunkBatches = 64;
+  static constexpr int64_t kChunkBatches = 256 / kLanes;
 
   int64_t tet_count = 0;      // in the batches
   std::vector<int32_t> tets;  // which, ascending; empty for all of the mesh
-  std::vector<TetBatch> batches;
+  // m, a power of two. In double 1; in float near the size of the tets, so that no power of a
+  // length leaves the range.
+  double length_unit = 1;
+  std::vector<TetBatch<T>> batches;
   ChunkColoring coloring;
 
-  // The tet at a place, which is 4 * batch + lane.
+  // The tet at a place, which is kLanes * batch + lane.
   int64_t tet_at(int64_t place) const {
     return tets.empty() ? place : tets[static_cast<size_t>(place)];
   }
   // The place of a tet, -1 where it is in no batch.
   int64_t place_of(int64_t tet) const;
 
+  int64_t batch_count() const { return static_cast<int64_t>(batches.size()); }
+  int64_t chunk_count() const { return (batch_count() + kChunkBatches - 1) / kChunkBatches; }
   int lanes(int64_t batch) const {
     const int64_t left = tet_count - batch * kLanes;
-    return left < kLanes ? static_cast<int>(left) : kLanes;
+    return static_cast<int>(left < kLanes ? left : kLanes);
   }
 };
 
 // Of the tets that are named, ascending; of all where none is. Precondition: positive rest volumes.
-TetBatches BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
-                           std::vector<int32_t> tets);
+template <typename T>
+TetBatches<T> BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
+                              std::vector<int32_t> tets);
 
 // m^3.
 double RestVolume(const TetMesh& mesh, int64_t tet);
 
-// F - I of a batch; exact zero where all four displacements are equal.
-inline Matrix3<Double4> DisplacementGradient(const TetBatch& batch, const Double4* displacements) {
-  Double4 at[4][4];  // [vertex][lane], then [vertex][axis]
-  for (size_t vertex = 0; vertex < 4; ++vertex) {
-    for (size_t lane = 0; lane < kLanes; ++lane)
-      at[vertex][lane] = displacements[batch.nodes[vertex][lane]];
-    Transpose(at[vertex][0], at[vertex][1], at[vertex][2], at[vertex][3]);
+// How vertices 1 to 3 of a batch have moved against vertex 0, length_unit, (vertex - 1, axis). The
+// differences are taken in double.
+inline Matrix3<Double4> VertexMoves(const TetBatch<Double4>& batch, const Double4* displacements,
+                                    double /*length_unit*/) {
+  Matrix3<Double4> moves;
+  for (size_t vertex = 1; vertex < 4; ++vertex) {
+    Double4 at[4];  // [lane], then [axis]
+    for (size_t lane = 0; lane < 4; ++lane) {
+      at[lane] = displacements[batch.nodes[vertex][lane]] - displacements[batch.nodes[0][lane]];
+    }
+    Transpose(at[0], at[1], at[2], at[3]);
+    for (int axis = 0; axis < 3; ++axis) moves(static_cast<int>(vertex) - 1, axis) = at[axis];
   }
-  Matrix3<Double4> gradient;
+  return moves;
+}
+
+inline Matrix3<Float8> VertexMoves(const TetBatch<Float8>& batch, const Double4* displacements,
+                                   double length_unit) {
+  const double scale = 1 / length_unit;
+  Matrix3<Float8> moves;
+  for (size_t vertex = 1; vertex < 4; ++vertex) {
+    const auto move = [&](size_t lane) {
+      return Narrow(
+          scale * (displacements[batch.nodes[vertex][lane]] - displacements[batch.nodes[0][lane]]));
+    };
+    Float8 at[4];  // [lane of a half], then [axis]
+    for (size_t lane = 0; lane < 4; ++lane) at[lane] = Join(move(lane), move(lane + 4));
+    Transpose(at[0], at[1], at[2], at[3]);
+    for (int axis = 0; axis < 3; ++axis) moves(static_cast<int>(vertex) - 1, axis) = at[axis];
+  }
+  return moves;
+}
+
+// F - I of a batch from its moves and shape gradients; exact zero where nothing moved.
+template <typename T>
+Matrix3<T> DisplacementGradient(const Matrix3<T>& moves, const Matrix3<T>& gradient) {
+  Matrix3<T> result;
   for (int i = 0; i < 3; ++i) {
-    const Double4 d1 = at[1][i] - at[0][i], d2 = at[2][i] - at[0][i], d3 = at[3][i] - at[0][i];
     for (int j = 0; j < 3; ++j) {
-      gradient(i, j) =
-          d1 * batch.gradient[0][j] + d2 * batch.gradient[1][j] + d3 * batch.gradient[2][j];
+      result(i, j) = moves(0, i) * gradient(0, j) + moves(1, i) * gradient(1, j) +
+                     moves(2, i) * gradient(2, j);
     }
   }
-  return gradient;
+  return result;
 }
 
 // Runs body(chunk, first batch, end batch) over all chunks in the order of the colouring.
-template <typename Body>
-void ForEachChunk(const TetBatches& tets, const Body& body) {
-  const auto batch_count = static_cast<int64_t>(tets.batches.size());
+template <typename T, typename Body>
+void ForEachChunk(const TetBatches<T>& tets, const Body& body) {
   for (const std::vector<int32_t>& color : tets.coloring.colors) {
     ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
       for (int64_t k = begin; k < end; ++k) {
         const int64_t chunk = color[static_cast<size_t>(k)];
-        const int64_t first = chunk * TetBatches::kChunkBatches;
-        body(chunk, first, std::min(first + TetBatches::kChunkBatches, batch_count));
+        const int64_t first = chunk * TetBatches<T>::kChunkBatches;
+        body(chunk, first, std::min(first + TetBatches<T>::kChunkBatches, tets.batch_count()));
       }
     });
   }
+}
+
+// Runs body(first batch, end batch) over all batches; for passes that write only to their own tets.
+template <typename T, typename Body>
+void ForEachBatch(const TetBatches<T>& tets, const Body& body) {
+  ParallelFor(tets.batch_count(), 2048 / TetBatches<T>::kLanes, body);
 }
 
 }  // namespace cleave

@@ -45,7 +45,7 @@ auto WithLaw(ElasticLaw law, const Visit& visit) {
   return visit(StableNeoHookean());
 }
 
-FibreStretch Stretched(const Matrix3d& g, const Vector3d& direction) {
+FibreStretch<Double4> Stretched(const Matrix3d& g, const Vector3d& direction) {
   const Vector3d ga = g * direction;
   Double4 a[3], change[3];
   for (int i = 0; i < 3; ++i) {
@@ -55,17 +55,18 @@ FibreStretch Stretched(const Matrix3d& g, const Vector3d& direction) {
   const bool inverted = (g + Matrix3d::Identity()).determinant() < 0;
   Double4 sign = Splat(1);
   if (inverted) sign = FibreSign(ComputeSvd(Batched(g)), a);
-  FibreStretch fibre = StretchFibre(a, change, sign);
+  FibreStretch<Double4> fibre = StretchFibre(a, change, sign);
   if (Any(IsCollapsed(fibre))) SetCollapsedDirection(ComputeSvd(Batched(g)), a, fibre);
   return fibre;
 }
 
-Vector3d DirectionOf(const FibreStretch& fibre) {
+Vector3d DirectionOf(const FibreStretch<Double4>& fibre) {
   return {fibre.direction[0][0], fibre.direction[1][0], fibre.direction[2][0]};
 }
 
 // The change of P that a change of F brings, from the spectrum in the frame of the singular values.
-Matrix3d Turned(const SignedSvd& svd, const StiffnessSpectrum& spectrum, const Matrix3d& change) {
+Matrix3d Turned(const SignedSvd<Double4>& svd, const StiffnessSpectrum<Double4>& spectrum,
+                const Matrix3d& change) {
   const Matrix3d u = FirstLane(svd.u), v = FirstLane(svd.v);
   const Matrix3d in_frame = u.transpose() * change * v;
   Matrix3d answer = Matrix3d::Zero();
@@ -103,7 +104,7 @@ PointResponse MaterialPoint::Respond(const Matrix3d& g) const {
   response.stress = response.matrix_stress;
   for (const Fibre& family : fibres_) {
     if (family.stiffness == 0) continue;
-    const FibreStretch fibre = Stretched(g, family.direction);
+    const FibreStretch<Double4> fibre = Stretched(g, family.direction);
     const double excess = fibre.excess[0];
     response.energy += 0.5 * family.stiffness * excess * excess;
     response.stress +=
@@ -114,7 +115,7 @@ PointResponse MaterialPoint::Respond(const Matrix3d& g) const {
 
 Matrix9d MaterialPoint::Tangent(const Matrix3d& g) const {
   const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
-  const SignedSvd svd = ComputeSvd(Batched(g));
+  const SignedSvd<Double4> svd = ComputeSvd(Batched(g));
   const StiffnessSpectrum spectrum =
       WithLaw(law_, [&]<typename Law>(Law) { return Law::Spectrum(svd, lame); });
   Matrix9d tangent;
@@ -126,7 +127,7 @@ Matrix9d MaterialPoint::Tangent(const Matrix3d& g) const {
   }
   for (const Fibre& family : fibres_) {
     if (family.stiffness == 0) continue;
-    const FibreStretch fibre = Stretched(g, family.direction);
+    const FibreStretch<Double4> fibre = Stretched(g, family.direction);
     const double across = FibreStiffnessAcross(fibre)[0];
     const Vector3d along = DirectionOf(fibre);
     const Matrix3d block = family.stiffness * ((1 - across) * along * along.transpose() +

@@ -298,6 +298,13 @@ struct Timing {
   int32_t steps_per_frame = 4;
 };
 
+// In what elements and linear solves calculate. Displacements, velocities, nodal forces, sums of
+// energies and what the solver decides by them are double in either.
+enum class Precision {
+  kDouble,
+  kFloat,  // faster; stresses err by about 1e-7 of the moduli
+};
+
 // The trade of speed against accuracy (method note, sections 7 and 10).
 struct Quality {
   int32_t newton_iterations = 8;  // most a solve may take before the step is halved
@@ -306,6 +313,7 @@ struct Quality {
   double step_tolerance = 1e-4;  // last Newton step relative to the mean edge length
   double linear_tolerance = 1e-3;  // relative residual of each linear solve
   int32_t max_step_halvings = 6;
+  Precision precision = Precision::kDouble;
 };
 
 struct Output {

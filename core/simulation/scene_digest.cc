@@ -209,6 +209,7 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.quality.step_tolerance);
   out.Put(scene.quality.linear_tolerance);
   out.Put(scene.quality.max_step_halvings);
+  out.Put(static_cast<uint32_t>(scene.quality.precision));
   out.Put(scene.seed);
 
   StateHash hash;

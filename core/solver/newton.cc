@@ -25,6 +25,8 @@ constexpr int32_t kTouchingIterations = 40;
 constexpr double kEnergyRounding = 1e-14;
 // Elastic terms of an edge carry a few roundings each.
 constexpr double kTermRounding = 1e-15;
+// How much coarser floats round.
+constexpr double kFloatOverDouble = 0x1.0p29;
 
 }  // namespace
 
@@ -34,7 +36,8 @@ NewtonSolver::NewtonSolver(const Model& model)
       gravity_(model.gravity ? ToDouble4(*model.gravity) : Splat(0)),
       blocks_(model.unknown_count()),
       matrix_(model.incidence->edges, model.unknown_count()),
-      pcg_(model.unknown_count(), fixed_nodes_),
+      pcg_(model.unknown_count(), fixed_nodes_, model.quality.precision),
+      element_rounding_(model.quality.precision == Precision::kFloat ? kFloatOverDouble : 1),
       inertia_(model.masses.size()),
       gradient_(model.masses.size()),
       residual_(model.masses.size()),
@@ -74,7 +77,7 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
     return Double4{Sum(inertial), Sum(outer), Sum(inertial_force), Sum(elastic_force)};
   });
   energy_ = sums[0] + sums[1] + elastic_energy_;
-  energy_magnitude_ = sums[0] + std::abs(sums[1]) + std::abs(elastic_energy_);
+  energy_magnitude_ = sums[0] + std::abs(sums[1]) + element_rounding_ * std::abs(elastic_energy_);
   force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
   if (!model_.node_terms.empty()) EvaluateNodeTerms(displacements);
   for (const FixedNode& fixed : fixed_nodes_) {
@@ -161,8 +164,15 @@ absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displa
     pcg_.Prepare(matrix_);
     const Double4 gross = blocks_.Sum(
         [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
-    rounding_energy_ = kTermRounding * gross[0];
-    rounding_force_ = rounding_inertia_ + kTermRounding * std::sqrt(gross[1]);
+    // Displacements are double in any case, and so are their differences; elements see the latter.
+    // Strain has rounding of the size of element rotations, energy that times stress.
+    const double in_strain = element_rounding_ * kTermRounding;
+    rounding_energy_ = kTermRounding * gross[0] +
+                       in_strain * std::sqrt(gross[0] * std::abs(elastic_energy_)) +
+                       in_strain * in_strain * gross[0];
+    rounding_force_ =
+        rounding_inertia_ +
+        kTermRounding * std::max(std::sqrt(gross[1]), element_rounding_ * std::sqrt(gross[2]));
     for (const auto& term : model_.node_terms)
       rounding_force_ += term->RoundingForce(displacements);
   }

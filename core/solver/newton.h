@@ -73,17 +73,18 @@ class NewtonSolver {
   NodeBlocks blocks_;
   StiffnessMatrix matrix_;
   PcgSolver pcg_;
-  std::vector<double> inertia_;  // kg/s^2, mass / dt^2
-  NodalVector gradient_;         // N, dE/dx
-  NodalVector residual_;         // N, -dE/dx, 0 at given coordinates
-  NodalVector search_;           // m
-  NodalVector trial_;            // m
-  NodalVector node_forces_;      // N, of the node terms; empty where there is none
+  const double element_rounding_;  // of elastic energies, in roundings of double
+  std::vector<double> inertia_;    // kg/s^2, mass / dt^2
+  NodalVector gradient_;           // N, dE/dx
+  NodalVector residual_;           // N, -dE/dx, 0 at given coordinates
+  NodalVector search_;             // m
+  NodalVector trial_;              // m
+  NodalVector node_forces_;        // N, of the node terms; empty where there is none
 
   double slope_ = 0;             // J, dE along the search direction
   double energy_ = 0;            // J
   double initial_energy_ = 0;    // J, where the Solve started
-  double energy_magnitude_ = 0;  // J, sum of the sizes of its terms
+  double energy_magnitude_ = 0;  // J, sum of the sizes of its terms, weighted by their rounding
   double elastic_energy_ = 0;    // J
   double initial_elastic_energy_ = 0;
   double residual_norm_ = 0;     // N

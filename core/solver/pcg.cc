@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -46,22 +47,53 @@ bool InvertBlock(const Double4 columns[3], Int64x4 fixed, Double4 inverse[3]) {
   return positive;
 }
 
+inline Float4 InPrecision(Double4 v, Float4) { return Narrow(v); }
+inline Double4 InPrecision(Double4 v, Double4) { return v; }
+inline Double4 ToDouble(Double4 v) { return v; }
+inline Double4 ToDouble(Float4 v) { return Widen(v); }
+
+template <typename V, typename Block>
+V Precondition(const Block& inverse, V r) {
+  if constexpr (std::is_same_v<V, Float4>) {
+    return MultiplyAdd(
+        inverse.columns[0], SplatLane<0>(r),
+        MultiplyAdd(inverse.columns[1], SplatLane<1>(r), inverse.columns[2] * SplatLane<2>(r)));
+  } else {
+    return MultiplyAdd(Widen(inverse.columns[0]), SplatLane<0>(r),
+                       MultiplyAdd(Widen(inverse.columns[1]), SplatLane<1>(r),
+                                   Widen(inverse.columns[2]) * SplatLane<2>(r)));
+  }
+}
+
+// The power of two at or below a positive finite size, else 1.
+double UnitNear(double size) {
+  return size > 0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1;
+}
+
 }  // namespace
 
-PcgSolver::PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes)
+PcgSolver::PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes, Precision precision)
     : fixed_nodes_(std::move(fixed_nodes)),
       blocks_(node_count),
       inverse_diagonal_(static_cast<size_t>(node_count)),
-      residual_(static_cast<size_t>(node_count)),
-      direction_(static_cast<size_t>(node_count)),
-      product_(static_cast<size_t>(node_count)),
-      preconditioned_(static_cast<size_t>(node_count)) {}
+      vectors_(Vectors<Double4>(0)) {
+  const auto count = static_cast<size_t>(node_count);
+  if (precision == Precision::kFloat) {
+    vectors_.emplace<Vectors<Float4>>(count).solution.resize(count);
+  } else {
+    vectors_.emplace<Vectors<Double4>>(count);
+  }
+}
 
 void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
-  Double4 middle[3];
-  matrix.DiagonalBlock(matrix.node_count() / 2, middle);
-  const double size = std::abs(middle[0][0]) + std::abs(middle[1][1]) + std::abs(middle[2][2]);
-  const double unit = size > 0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1;
+  // Of the first node from the middle on that is connected or has mass.
+  double size = 0;
+  for (int64_t node = matrix.node_count() / 2; size == 0 && node < matrix.node_count(); ++node) {
+    Double4 columns[3];
+    matrix.DiagonalBlock(node, columns);
+    size = std::abs(columns[0][0]) + std::abs(columns[1][1]) + std::abs(columns[2][2]);
+  }
+  unit_ = UnitNear(size);
   const Double4 negatives = blocks_.Sum([&](int64_t begin, int64_t end) {
     auto fixed =
         std::lower_bound(fixed_nodes_.begin(), fixed_nodes_.end(), begin,
@@ -74,7 +106,7 @@ void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
       if (fixed != fixed_nodes_.end() && fixed->node == node) axes = (fixed++)->axes;
       if (!InvertBlock(columns, axes, inverse)) negative += 1;
       for (int k = 0; k < 3; ++k) {
-        inverse_diagonal_[static_cast<size_t>(node)].columns[k] = Narrow(unit * inverse[k]);
+        inverse_diagonal_[static_cast<size_t>(node)].columns[k] = Narrow(unit_ * inverse[k]);
       }
     }
     return Splat(negative);
@@ -85,13 +117,46 @@ void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
 absl::StatusOr<PcgSolver::Result> PcgSolver::Solve(const StiffnessMatrix& matrix,
                                                    const NodalVector& rhs, double tolerance,
                                                    const StopFlag& stop, NodalVector& solution) {
+  return std::visit(
+      [&](auto& vectors) { return SolveIn(vectors, matrix, rhs, tolerance, stop, solution); },
+      vectors_);
+}
+
+template <typename V>
+absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
+                                                     const StiffnessMatrix& matrix,
+                                                     const NodalVector& rhs, double tolerance,
+                                                     const StopFlag& stop, NodalVector& solution) {
+  auto& [residual, direction, product, preconditioned, float_solution] = vectors;
+  const auto result_vector = [&]() -> std::vector<V>& {
+    if constexpr (std::is_same_v<V, Float4>) {
+      return float_solution;
+    } else {
+      return solution;
+    }
+  };
+  std::vector<V>& x = result_vector();
+  // In float, units bring everything near 1: the equations are (A / unit) (unit x / size) = b /
+  // size.
+  double matrix_unit = 1, size = 1;
+  if constexpr (std::is_same_v<V, Float4>) {
+    matrix_unit = unit_;
+    size = UnitNear(std::sqrt(Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+      Double4 sum = Splat(0);
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+        sum += rhs[node] * rhs[node];
+      return sum;
+    }))));
+  }
   double rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
     Double4 sum = Splat(0);
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-      solution[node] = Splat(0);
-      residual_[node] = rhs[node];
-      direction_[node] = Precondition(node, rhs[node]);
-      sum += residual_[node] * direction_[node];
+      x[node] = V{};
+      const V r = InPrecision(rhs[node] / size, V{});
+      const V z = Precondition(inverse_diagonal_[node], r);
+      residual[node] = r;
+      direction[node] = z;
+      sum += ToDouble(r * z);
     }
     return sum;
   }));
@@ -103,46 +168,56 @@ absl::StatusOr<PcgSolver::Result> PcgSolver::Solve(const StiffnessMatrix& matrix
     if (stop.requested()) return absl::CancelledError("stopped inside a linear solve");
     ++result.iterations;
     const double curvature = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
-      matrix.Multiply(direction_, begin, end, product_);
+      matrix.Multiply(direction, matrix_unit, begin, end, product);
       Double4 sum = Splat(0);
       for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
-        sum += direction_[node] * product_[node];
+        sum += ToDouble(direction[node] * product[node]);
       return sum;
     }));
     if (!(curvature > 0)) {
       result.positive = false;
       break;
     }
-    const double step = rz / curvature;
+    using Scalar = std::remove_reference_t<decltype(V{}[0])>;
+    const auto step = static_cast<Scalar>(rz / curvature);
     const double next_rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
       Double4 sum = Splat(0);
       for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-        const Double4 r = residual_[node] - step * product_[node];
-        const Double4 z = Precondition(node, r);
-        residual_[node] = r;
-        preconditioned_[node] = z;
-        sum += r * z;
+        const V r = residual[node] - step * product[node];
+        const V z = Precondition(inverse_diagonal_[node], r);
+        residual[node] = r;
+        preconditioned[node] = z;
+        sum += ToDouble(r * z);
       }
       return sum;
     }));
-    const double beta = next_rz / rz;
+    const auto beta = static_cast<Scalar>(next_rz / rz);
     rz = next_rz;
     blocks_.Run([&](int64_t begin, int64_t end) {
       for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-        const Double4 direction = direction_[node];
-        solution[node] += step * direction;
-        direction_[node] = preconditioned_[node] + beta * direction;
+        const V before = direction[node];
+        x[node] += step * before;
+        direction[node] = preconditioned[node] + beta * before;
       }
+    });
+  }
+  if constexpr (std::is_same_v<V, Float4>) {
+    blocks_.Run([&](int64_t begin, int64_t end) {
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+        solution[node] = (size / unit_) * Widen(x[node]);
     });
   }
   return result;
 }
 
 int64_t PcgSolver::bytes() const {
+  const auto of_vectors = [](const auto& vectors) {
+    return static_cast<int64_t>((4 * vectors.residual.size() + vectors.solution.size()) *
+                                sizeof(vectors.residual[0]));
+  };
   return static_cast<int64_t>(inverse_diagonal_.size() * sizeof(InverseBlock) +
-                              4 * residual_.size() * sizeof(Double4) +
                               fixed_nodes_.size() * sizeof(FixedNode)) +
-         blocks_.bytes();
+         std::visit(of_vectors, vectors_) + blocks_.bytes();
 }
 
 }  // namespace cleave

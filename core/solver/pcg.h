@@ -2,12 +2,13 @@
 #define CLEAVE_CORE_SOLVER_PCG_H_
 
 #include <cstdint>
-#include <span>
+#include <variant>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/base/stop_flag.h"
 #include "core/model/nodal_vector.h"
+#include "core/scene/scene.h"
 #include "core/solver/block_sums.h"
 #include "core/solver/constraints.h"
 #include "core/solver/stiffness_matrix.h"
@@ -15,11 +16,12 @@
 namespace cleave {
 
 // Conjugate gradients preconditioned with the inverse diagonal blocks. Given coordinates stay 0:
-// the preconditioner has no entry there, so no search direction has. Not thread-safe; loops run on
-// the caller's TBB arena and give the same bits for any number of threads.
+// the preconditioner has no entry there, so no search direction has. In float the vectors are, and
+// sums over them are double; the solution has as many digits as that leaves. Not thread-safe; loops
+// run on the caller's TBB arena and give the same bits for any number of threads.
 class PcgSolver {
  public:
-  PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes);
+  PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes, Precision precision);
 
   struct Result {
     int32_t iterations = 0;
@@ -42,23 +44,31 @@ class PcgSolver {
   struct InverseBlock {
     Float4 columns[3];
   };
+  // V is Double4 or Float4.
+  template <typename V>
+  struct Vectors {
+    explicit Vectors(size_t node_count)
+        : residual(node_count),
+          direction(node_count),
+          product(node_count),
+          preconditioned(node_count) {}
 
-  Double4 Precondition(size_t node, Double4 r) const {
-    const InverseBlock& inverse = inverse_diagonal_[node];
-    return MultiplyAdd(Widen(inverse.columns[0]), SplatLane<0>(r),
-                       MultiplyAdd(Widen(inverse.columns[1]), SplatLane<1>(r),
-                                   Widen(inverse.columns[2]) * SplatLane<2>(r)));
-  }
+    std::vector<V> residual, direction, product, preconditioned;
+    std::vector<V> solution;  // in float; in double it is the caller's
+  };
+
+  template <typename V>
+  absl::StatusOr<Result> SolveIn(Vectors<V>& vectors, const StiffnessMatrix& matrix,
+                                 const NodalVector& rhs, double tolerance, const StopFlag& stop,
+                                 NodalVector& solution);
 
   std::vector<FixedNode> fixed_nodes_;
   NodeBlocks blocks_;
-  // Times a power of two that brings it near 1: a preconditioner's scale does not matter.
-  std::vector<InverseBlock> inverse_diagonal_;
+  // What is near the matrix's entries, N/m, a power of two.
+  double unit_ = 1;
+  std::vector<InverseBlock> inverse_diagonal_;  // times the unit
   bool positive_diagonal_ = true;
-  NodalVector residual_;
-  NodalVector direction_;
-  NodalVector product_;
-  NodalVector preconditioned_;
+  std::variant<Vectors<Double4>, Vectors<Float4>> vectors_;
 };
 
 }  // namespace cleave

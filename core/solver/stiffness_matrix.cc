@@ -12,15 +12,26 @@ constexpr int64_t kGrain = 2048;  // rows
 
 constexpr Int64x4 kCoordinates = {-1, -1, -1, 0};
 
+inline void Load(const float* column, Double4& values) { values = LoadFloats(column); }
+inline void Load(const float* column, Float4& values) { values = LoadFloat4(column); }
+inline Double4 ToDouble(Double4 v) { return v; }
+inline Double4 ToDouble(Float4 v) { return Widen(v); }
+inline void Store(Double4 v, Double4& to) { to = v; }
+inline void Store(Double4 v, Float4& to) { to = Narrow(v); }
+
 // Adds B (x - y) for the blocks of one row.
-inline Double4 RowSum(const float* block, const int32_t* column, const int32_t* end, Double4 x,
-                      const Double4* values) {
-  Double4 sum0 = Splat(0), sum1 = Splat(0), sum2 = Splat(0);
+template <typename V>
+V RowSum(const float* block, const int32_t* column, const int32_t* end, V x, const V* values) {
+  V sum0 = V{}, sum1 = V{}, sum2 = V{};
   for (; column != end; ++column, block += 9) {
-    const Double4 d = x - values[*column];
-    sum0 = MultiplyAdd(LoadFloats(block), SplatLane<0>(d), sum0);
-    sum1 = MultiplyAdd(LoadFloats(block + 3), SplatLane<1>(d), sum1);
-    sum2 = MultiplyAdd(LoadFloats(block + 6), SplatLane<2>(d), sum2);
+    const V d = x - values[*column];
+    V column0, column1, column2;
+    Load(block, column0);
+    Load(block + 3, column1);
+    Load(block + 6, column2);
+    sum0 = MultiplyAdd(column0, SplatLane<0>(d), sum0);
+    sum1 = MultiplyAdd(column1, SplatLane<1>(d), sum1);
+    sum2 = MultiplyAdd(column2, SplatLane<2>(d), sum2);
   }
   return sum0 + sum1 + sum2;
 }
@@ -75,31 +86,39 @@ void StiffnessMatrix::Finish(const std::vector<double>& inertia) {
   });
 }
 
-void StiffnessMatrix::Multiply(const NodalVector& x, int64_t begin, int64_t end,
-                               NodalVector& product) const {
+template <typename V>
+void StiffnessMatrix::Multiply(const std::vector<V>& x, double unit, int64_t begin, int64_t end,
+                               std::vector<V>& product) const {
+  const double scale = 1 / unit;
   for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-    const Double4 sum = (*inertia_)[node] * x[node] +
-                        RowSum(upper_.data() + 9 * int64_t{upper_begin_[node]},
-                               upper_node_.data() + upper_begin_[node],
-                               upper_node_.data() + upper_begin_[node + 1], x[node], x.data()) +
-                        RowSum(lower_.data() + 9 * int64_t{lower_begin_[node]},
-                               lower_node_.data() + lower_begin_[node],
-                               lower_node_.data() + lower_begin_[node + 1], x[node], x.data());
-    product[node] = kCoordinates ? sum : Splat(0);
+    const V upper = RowSum(upper_.data() + 9 * int64_t{upper_begin_[node]},
+                           upper_node_.data() + upper_begin_[node],
+                           upper_node_.data() + upper_begin_[node + 1], x[node], x.data());
+    const V lower = RowSum(lower_.data() + 9 * int64_t{lower_begin_[node]},
+                           lower_node_.data() + lower_begin_[node],
+                           lower_node_.data() + lower_begin_[node + 1], x[node], x.data());
+    const Double4 sum = (*inertia_)[node] * ToDouble(x[node]) + ToDouble(upper) + ToDouble(lower);
+    Store(kCoordinates ? scale * sum : Splat(0), product[node]);
   }
   if (couplings_.empty()) return;
   for (const NodeCouplings::Entry& entry : couplings_.Rows(begin, end)) {
-    const Double4 value = x[static_cast<size_t>(entry.column)];
-    product[static_cast<size_t>(entry.row)] += entry.columns[0] * SplatLane<0>(value) +
-                                               entry.columns[1] * SplatLane<1>(value) +
-                                               entry.columns[2] * SplatLane<2>(value);
+    const Double4 value = scale * ToDouble(x[static_cast<size_t>(entry.column)]);
+    V& target = product[static_cast<size_t>(entry.row)];
+    Store(ToDouble(target) + entry.columns[0] * SplatLane<0>(value) +
+              entry.columns[1] * SplatLane<1>(value) + entry.columns[2] * SplatLane<2>(value),
+          target);
   }
 }
 
+template void StiffnessMatrix::Multiply(const std::vector<Double4>&, double, int64_t, int64_t,
+                                        std::vector<Double4>&) const;
+template void StiffnessMatrix::Multiply(const std::vector<Float4>&, double, int64_t, int64_t,
+                                        std::vector<Float4>&) const;
+
 Double4 StiffnessMatrix::GrossTerms(const NodalVector& x, int64_t begin, int64_t end) const {
-  double energy = 0, squared_forces = 0;
+  double energy = 0, squared_forces = 0, squared_differences = 0;
   for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-    double force = 0;
+    double force = 0, of_differences = 0;
     const double size = std::sqrt(Dot(x[node], x[node]));
     const auto add = [&](const float* block, int32_t other) {
       double squares = 0;
@@ -109,6 +128,7 @@ Double4 StiffnessMatrix::GrossTerms(const NodalVector& x, int64_t begin, int64_t
       const double length = std::sqrt(Dot(d, d));
       const double stiffness = std::sqrt(squares);
       force += stiffness * (size + std::sqrt(Dot(y, y)));
+      of_differences += stiffness * length;
       energy += stiffness * length * length;
     };
     for (int64_t edge = upper_begin_[node]; edge < upper_begin_[node + 1]; ++edge)
@@ -116,8 +136,9 @@ Double4 StiffnessMatrix::GrossTerms(const NodalVector& x, int64_t begin, int64_t
     for (int64_t slot = lower_begin_[node]; slot < lower_begin_[node + 1]; ++slot)
       add(lower_.data() + 9 * slot, lower_node_[static_cast<size_t>(slot)]);
     squared_forces += force * force;
+    squared_differences += of_differences * of_differences;
   }
-  return Double4{energy, squared_forces, 0, 0};
+  return Double4{energy, squared_forces, squared_differences, 0};
 }
 
 void StiffnessMatrix::DiagonalBlock(int64_t node, Double4 columns[3]) const {

@@ -31,11 +31,15 @@ class StiffnessMatrix {
   // is until the next call.
   void Finish(const std::vector<double>& inertia);
 
-  // (A x) of nodes [begin, end).
-  void Multiply(const NodalVector& x, int64_t begin, int64_t end, NodalVector& product) const;
+  // (A x) / unit of nodes [begin, end), unit being a power of two; V is Double4 or Float4. In float
+  // the blocks' share is summed up in float.
+  template <typename V>
+  void Multiply(const std::vector<V>& x, double unit, int64_t begin, int64_t end,
+                std::vector<V>& product) const;
   // What rounding takes a share of at displacements x, for nodes [begin, end): the sum over edges
-  // of |B| |x_i - x_j|^2 (J), the squared sum of |B| (|x_i| + |x_j|) (N^2), 0, 0. A piece that has
-  // only moved and turned has no net force, but its terms do not cancel to the last digit.
+  // of |B| |x_i - x_j|^2 (J), the squared sums of |B| (|x_i| + |x_j|) and of |B| |x_i - x_j| (N^2),
+  // 0. A piece that has only moved and turned has no net force, but its terms do not cancel to the
+  // last digit.
   Double4 GrossTerms(const NodalVector& x, int64_t begin, int64_t end) const;
   // The diagonal block of a node, by columns. Symmetric to float rounding.
   void DiagonalBlock(int64_t node, Double4 columns[3]) const;

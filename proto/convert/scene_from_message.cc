@@ -469,6 +469,8 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
       "fracture.aggregation", message.fracture().aggregation(), 2);
   scene.fracture.reformulation = convert.AfterUnspecified<Reformulation>(
       "fracture.reformulation", message.fracture().reformulation(), 2);
+  scene.quality.precision = convert.AfterUnspecified<Precision>(
+      "quality.precision", message.quality().precision(), 2);
   if (message.has_impurities()) scene.impurities = convert.AllImpurities(message.impurities());
   ReadSettings(message, scene, faults);
   scene.seed = message.seed();

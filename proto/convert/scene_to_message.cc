@@ -239,6 +239,8 @@ void WriteSettings(const Scene& scene, v1::Scene& message) {
   quality->set_step_tolerance(scene.quality.step_tolerance);
   quality->set_linear_tolerance(scene.quality.linear_tolerance);
   quality->set_max_step_halvings(scene.quality.max_step_halvings);
+  quality->set_precision(scene.quality.precision == Precision::kFloat ? v1::PRECISION_FLOAT
+                                                                      : v1::PRECISION_DOUBLE);
 
   v1::Output* output = message.mutable_output();
   if (scene.output.tolerance.has_value()) output->set_tolerance(*scene.output.tolerance);

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "core/base/double4.h"
+#include "core/base/lanes.h"
 #include "core/base/matrix3.h"
 #include "core/material/isotropic_stiffness.h"
 
@@ -14,15 +14,17 @@ namespace cleave {
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
 // F - I, the same in every lane.
-inline Matrix3<Double4> DisplacementGradientOf(const Eigen::Matrix3d& f) {
-  Matrix3<Double4> g;
+template <typename T = Double4>
+Matrix3<T> DisplacementGradientOf(const Eigen::Matrix3d& f) {
+  Matrix3<T> g;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) g(i, j) = Splat(f(i, j) - (i == j ? 1 : 0));
+    for (int j = 0; j < 3; ++j) g(i, j) = Splat<T>(f(i, j) - (i == j ? 1 : 0));
   }
   return g;
 }
 
-inline Eigen::Matrix3d FirstLane(const Matrix3<Double4>& batch) {
+template <typename T>
+Eigen::Matrix3d FirstLane(const Matrix3<T>& batch) {
   Eigen::Matrix3d matrix;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) matrix(i, j) = batch(i, j)[0];
@@ -36,20 +38,21 @@ inline Eigen::Matrix3d MatrixOf(const std::array<double, 9>& rows) {
   return matrix;
 }
 
-template <typename Law>
-double EnergyAt(const Eigen::Matrix3d& f, const LameConstants<Double4>& lame) {
-  const Matrix3<Double4> g = DisplacementGradientOf(f);
+template <typename Law, typename T>
+double EnergyAt(const Eigen::Matrix3d& f, const LameConstants<T>& lame) {
+  const Matrix3<T> g = DisplacementGradientOf<T>(f);
   return Law::Energy(g, Law::KinematicsOf(g), lame)[0];
 }
 
-template <typename Law>
-Eigen::Matrix3d StressAt(const Eigen::Matrix3d& f, const LameConstants<Double4>& lame) {
-  const Matrix3<Double4> g = DisplacementGradientOf(f);
+template <typename Law, typename T>
+Eigen::Matrix3d StressAt(const Eigen::Matrix3d& f, const LameConstants<T>& lame) {
+  const Matrix3<T> g = DisplacementGradientOf<T>(f);
   return FirstLane(Law::Stress(g, Law::KinematicsOf(g), lame));
 }
 
 // The second derivative of psi by F, both stored row by row, that a spectrum stands for.
-inline Matrix9d SecondDerivative(const SignedSvd& svd, const StiffnessSpectrum& spectrum) {
+template <typename T>
+Matrix9d SecondDerivative(const SignedSvd<T>& svd, const StiffnessSpectrum<T>& spectrum) {
   const Eigen::Matrix3d u = FirstLane(svd.u), v = FirstLane(svd.v);
   Matrix9d result = Matrix9d::Zero();
   const auto direction = [&](int i, int j, double other) {

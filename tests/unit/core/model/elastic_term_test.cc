@@ -56,7 +56,8 @@ class ElasticTermTest : public ::testing::Test {
   const TetMesh mesh_ = KuhnBox({2, 1, 1}, {2, 1, 1});
   const Incidence incidence_ = BuildIncidence(mesh_);
   const std::unique_ptr<TetTerm> term_ =
-      MakeElasticTerm(ElasticLaw::kStableNeoHookean, mesh_, incidence_, {}, {ToLame(1000, 0.3)});
+      MakeElasticTerm(Precision::kDouble, mesh_, incidence_, {.lame = {ToLame(1000, 0.3)}},
+                      FractureStress::kMatrix);
 };
 
 TEST_F(ElasticTermTest, HasTheReferenceEnergyOfABentBar) {

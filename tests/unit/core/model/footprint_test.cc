@@ -100,15 +100,18 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
 
 TEST(Footprint, FibresTakeTheBytesThatWerePlanned) {
   const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
-  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
   const FibreFamily family{1e6, ConstantDirection{{1, 0, 0}}, 1};
-  scene.materials[0].fibres = {family, family};
-  const Model model = *BuildModel(scene, mesh);
-  ASSERT_EQ(model.tet_terms.size(), 3u);
-  const Footprint footprint =
-      PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
-  EXPECT_EQ(BytesOf(footprint, "fibres"),
-            model.tet_terms[1]->bytes() + model.tet_terms[2]->bytes());
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+    scene.quality.precision = precision;
+    const int64_t without = BuildModel(scene, mesh)->tet_terms[0]->bytes();
+    scene.materials[0].fibres = {family, family};
+    const Model model = *BuildModel(scene, mesh);
+    ASSERT_EQ(model.tet_terms.size(), 1u);
+    const Footprint footprint =
+        PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+    EXPECT_EQ(BytesOf(footprint, "fibres"), model.tet_terms[0]->bytes() - without);
+  }
 }
 
 TEST(Footprint, ASecondMaterialCostsARecordABatch) {
@@ -120,13 +123,16 @@ TEST(Footprint, ASecondMaterialCostsARecordABatch) {
 
 TEST(Footprint, ElasticityTakesTheBytesThatWerePlanned) {
   const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
-  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
-  for (int materials = 1; materials <= 2; ++materials) {
-    const Model model = *BuildModel(scene, mesh);
-    const Footprint footprint =
-        PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
-    EXPECT_EQ(BytesOf(footprint, "elasticity"), model.tet_terms[0]->bytes());
-    scene.materials.push_back(scene.materials[0]);
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+    scene.quality.precision = precision;
+    for (int materials = 1; materials <= 2; ++materials) {
+      const Model model = *BuildModel(scene, mesh);
+      const Footprint footprint =
+          PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+      EXPECT_EQ(BytesOf(footprint, "elasticity"), model.tet_terms[0]->bytes());
+      scene.materials.push_back(scene.materials[0]);
+    }
   }
 }
 

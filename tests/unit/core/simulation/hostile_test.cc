@@ -23,7 +23,20 @@ Scene Cube() {
   return scene;
 }
 
-std::unique_ptr<Simulation> MustRun(const Scene& scene, const TetMesh& mesh, int frames) {
+class Hostile : public ::testing::TestWithParam<Precision> {
+ protected:
+  std::unique_ptr<Simulation> MustRun(Scene scene, const TetMesh& mesh, int frames) const;
+  std::unique_ptr<Simulation> Crush(double depth) const;
+};
+
+INSTANTIATE_TEST_SUITE_P(InBothPrecisions, Hostile,
+                         ::testing::Values(Precision::kDouble, Precision::kFloat),
+                         [](const auto& test) {
+                           return test.param == Precision::kFloat ? "Float" : "Double";
+                         });
+
+std::unique_ptr<Simulation> Hostile::MustRun(Scene scene, const TetMesh& mesh, int frames) const {
+  scene.quality.precision = GetParam();
   auto simulation = *Simulation::Create(scene, mesh, Simulation::Options{});
   const StopFlag stop;
   for (int frame = 0; frame < frames; ++frame) {
@@ -39,7 +52,7 @@ std::unique_ptr<Simulation> MustRun(const Scene& scene, const TetMesh& mesh, int
   return simulation;
 }
 
-TEST(Hostile, StiffnessFromFoamToBeyondDiamond) {
+TEST_P(Hostile, StiffnessFromFoamToBeyondDiamond) {
   for (const double youngs_modulus : {1e-3, 1.0, 1e5, 1e9, 1e13}) {
     SCOPED_TRACE(youngs_modulus);
     Scene scene = Cube();
@@ -49,13 +62,13 @@ TEST(Hostile, StiffnessFromFoamToBeyondDiamond) {
   }
 }
 
-TEST(Hostile, StepsOfTenthsOfMicroseconds) {
+TEST_P(Hostile, StepsOfTenthsOfMicroseconds) {
   Scene scene = Cube();
   scene.timing.frames_per_second = 1e7;
   MustRun(scene, KuhnBox({3, 3, 3}, {1, 1, 1}), 5);
 }
 
-TEST(Hostile, StepsOfNanosecondsOfASpinningBodyEndAtRounding) {
+TEST_P(Hostile, StepsOfNanosecondsOfASpinningBodyEndAtRounding) {
   Scene scene = TightScene(1e5, 0.3, 1000, 1e-9);
   InitialVelocity spin;
   spin.angular_velocity = {0, 0, 4};
@@ -63,7 +76,7 @@ TEST(Hostile, StepsOfNanosecondsOfASpinningBodyEndAtRounding) {
   MustRun(scene, KuhnBox({3, 3, 3}, {1, 1, 1}), 3);
 }
 
-TEST(Hostile, BodiesFromNanometresToThousandsOfKilometres) {
+TEST_P(Hostile, BodiesFromNanometresToThousandsOfKilometres) {
   for (const double size : {1e-9, 1e-3, 1e3, 1e6}) {
     SCOPED_TRACE(size);
     Scene scene = Cube();
@@ -75,7 +88,7 @@ TEST(Hostile, BodiesFromNanometresToThousandsOfKilometres) {
   }
 }
 
-TEST(Hostile, FarFromTheOriginTheBodyFallsTheSame) {
+TEST_P(Hostile, FarFromTheOriginTheBodyFallsTheSame) {
   Scene scene = TightScene(1e5, 0.3, 1000, 0.01);
   scene.gravity = Vec3{0, 0, -9.81};
   const auto near = MustRun(scene, KuhnBox({2, 2, 2}, {1, 1, 1}), 10);
@@ -85,7 +98,7 @@ TEST(Hostile, FarFromTheOriginTheBodyFallsTheSame) {
     EXPECT_NEAR(away->positions()[node][2] - far, near->positions()[node][2], 1e-7);
 }
 
-TEST(Hostile, OneTet) {
+TEST_P(Hostile, OneTet) {
   TetMesh mesh;
   mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.tets = {{0, 1, 2, 3}};
@@ -94,7 +107,7 @@ TEST(Hostile, OneTet) {
   EXPECT_EQ(simulation->positions()[1], (Vec3{1, 0, 0}));
 }
 
-TEST(Hostile, PiecesThatDoNotTouchAndNodesOfNoTet) {
+TEST_P(Hostile, PiecesThatDoNotTouchAndNodesOfNoTet) {
   TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
   mesh.rest_positions.push_back({7, 7, 7});
   const TetMesh other = KuhnBox({1, 1, 1}, {1, 1, 1}, {5, 0, 3});
@@ -111,7 +124,7 @@ TEST(Hostile, PiecesThatDoNotTouchAndNodesOfNoTet) {
   EXPECT_NEAR(simulation->positions().back()[2], 4 - 9.81 * 1e-4 * 55, 1e-6);
 }
 
-TEST(Hostile, BlocksJoinedByANode) {
+TEST_P(Hostile, BlocksJoinedByANode) {
   TetMesh mesh = KuhnBox({1, 1, 1}, {1, 1, 1});
   const TetMesh other = KuhnBox({1, 1, 1}, {1, 1, 1}, {1, 1, 1});
   for (auto tet : other.tets) {
@@ -123,7 +136,7 @@ TEST(Hostile, BlocksJoinedByANode) {
   MustRun(Cube(), mesh, 20);
 }
 
-TEST(Hostile, AllNodesPinnedAndStillTheStressBreaks) {
+TEST_P(Hostile, AllNodesPinnedAndStillTheStressBreaks) {
   const TetMesh mesh = KuhnBox({2, 1, 1}, {2, 1, 1});
   Scene scene = TightScene(1e5, 0.3, 1000, 0.01);
   AddBoxSet(scene, "left", {-1, -1, -1}, {0.5, 2, 2});
@@ -137,7 +150,7 @@ TEST(Hostile, AllNodesPinnedAndStillTheStressBreaks) {
   EXPECT_EQ(simulation->fragments(), 5);
 }
 
-TEST(Hostile, NothingMovesToTheLastBit) {
+TEST_P(Hostile, NothingMovesToTheLastBit) {
   const TetMesh mesh = KuhnBox({3, 3, 3}, {0.7, 0.3, 1.1}, {0.1, 0.2, 0.3});
   Scene scene = TightScene(1e5, 0.3, 1000, 0.01);
   scene.materials[0].tensile_strength = 1;
@@ -147,7 +160,7 @@ TEST(Hostile, NothingMovesToTheLastBit) {
   EXPECT_EQ(simulation->positions(), mesh.rest_positions);
 }
 
-TEST(Hostile, NoStrengthCutsEverythingAtOnceAndInfiniteStrengthNothing) {
+TEST_P(Hostile, NoStrengthCutsEverythingAtOnceAndInfiniteStrengthNothing) {
   Scene scene = Cube();
   scene.materials[0].tensile_strength = 0;
   const TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
@@ -160,7 +173,7 @@ TEST(Hostile, NoStrengthCutsEverythingAtOnceAndInfiniteStrengthNothing) {
 }
 
 // A lid goes down by `depth` of the cube's height and comes back.
-std::unique_ptr<Simulation> Crush(double depth) {
+std::unique_ptr<Simulation> Hostile::Crush(double depth) const {
   Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
   scene.quality = Quality{};
   scene.quality.newton_iterations = 100;
@@ -172,7 +185,7 @@ std::unique_ptr<Simulation> Crush(double depth) {
   return MustRun(scene, KuhnBox({3, 3, 3}, {1, 1, 1}), 300);
 }
 
-TEST(Hostile, ACubeCrushedToAFifthComesBack) {
+TEST_P(Hostile, ACubeCrushedToAFifthComesBack) {
   const TetMesh mesh = KuhnBox({3, 3, 3}, {1, 1, 1});
   const auto simulation = Crush(0.8);
   for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
@@ -181,7 +194,7 @@ TEST(Hostile, ACubeCrushedToAFifthComesBack) {
   }
 }
 
-TEST(Hostile, ALidThroughTheFloorTurnsTetsInsideOutAndNothingDiverges) {
+TEST_P(Hostile, ALidThroughTheFloorTurnsTetsInsideOutAndNothingDiverges) {
   const auto simulation = Crush(1.5);
   for (const Vec3& position : simulation->positions()) {
     for (const double coordinate : position) EXPECT_LT(std::abs(coordinate), 5);
@@ -189,7 +202,7 @@ TEST(Hostile, ALidThroughTheFloorTurnsTetsInsideOutAndNothingDiverges) {
 }
 
 // Its forces are rounding and nothing else, which no tolerance relative to them can reach.
-TEST(Hostile, ABodyDraggedFarAndTurnedThereComesToRestInRounding) {
+TEST_P(Hostile, ABodyDraggedFarAndTurnedThereComesToRestInRounding) {
   const TetMesh mesh = KuhnBox({3, 2, 2}, {1.5, 1, 1});
   Scene scene = TightScene(1e9, 0.3, 1000, 0.01);
   scene.quality = Quality{};
@@ -199,7 +212,7 @@ TEST(Hostile, ABodyDraggedFarAndTurnedThereComesToRestInRounding) {
   MustRun(scene, mesh, 200);
 }
 
-TEST(Hostile, DensityAndStiffnessAMillionTimesApart) {
+TEST_P(Hostile, DensityAndStiffnessAMillionTimesApart) {
   TetMesh mesh = KuhnBox({4, 2, 2}, {2, 1, 1});
   mesh.tet_regions.resize(static_cast<size_t>(mesh.tet_count()));
   for (size_t tet = 0; tet < mesh.tets.size(); ++tet)
@@ -213,7 +226,7 @@ TEST(Hostile, DensityAndStiffnessAMillionTimesApart) {
   MustRun(scene, mesh, 10);
 }
 
-TEST(Hostile, PinnedEndsThatCross) {
+TEST_P(Hostile, PinnedEndsThatCross) {
   const TetMesh mesh = KuhnBox({6, 2, 2}, {3, 1, 1});
   Scene scene = TightScene(1e4, 0.3, 1000, 0.01);
   scene.quality = Quality{};

@@ -31,7 +31,7 @@ class LinearSolver : public ::testing::Test {
     NodalVector x(static_cast<size_t>(mesh_.node_count()), Splat(0)), product = x;
     for (int column = 0; column < size; ++column) {
       x[static_cast<size_t>(column / 3)][column % 3] = 1;
-      matrix_.Multiply(x, 0, mesh_.node_count(), product);
+      matrix_.Multiply(x, 1, 0, mesh_.node_count(), product);
       for (int row = 0; row < size; ++row)
         dense(row, column) = product[static_cast<size_t>(row / 3)][row % 3];
       x[static_cast<size_t>(column / 3)][column % 3] = 0;
@@ -82,7 +82,7 @@ TEST_F(LinearSolver, CouplingsAreInProductAndDiagonalUntilTheNextMatrix) {
 
 TEST_F(LinearSolver, ATranslationMeetsInertiaAloneToTheLastBit) {
   NodalVector x(static_cast<size_t>(mesh_.node_count()), Double4{3, -7, 11, 0}), product = x;
-  matrix_.Multiply(x, 0, mesh_.node_count(), product);
+  matrix_.Multiply(x, 1, 0, mesh_.node_count(), product);
   for (const Double4& of_node : product) {
     EXPECT_EQ(of_node[0], 0.1 * 3);
     EXPECT_EQ(of_node[1], 0.1 * -7);
@@ -90,27 +90,32 @@ TEST_F(LinearSolver, ATranslationMeetsInertiaAloneToTheLastBit) {
   }
 }
 
-TEST_F(LinearSolver, SolvesWithGivenCoordinatesAtZero) {
-  const std::vector<FixedNode> fixed = {{2, Int64x4{-1, -1, -1, 0}}, {7, Int64x4{0, -1, 0, 0}}};
-  PcgSolver pcg(mesh_.node_count(), fixed);
-  pcg.Prepare(matrix_);
-  NodalVector rhs, solution(static_cast<size_t>(mesh_.node_count()));
-  for (int node = 0; node < mesh_.node_count(); ++node)
-    rhs.push_back(Double4{std::sin(node), std::cos(3 * node), 1.0 / (node + 1), 0});
-  const StopFlag stop;
-  const auto result = pcg.Solve(matrix_, rhs, 1e-10, stop, solution);
-  ASSERT_TRUE(result.ok());
-  EXPECT_TRUE(result->positive);
-  for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(solution[2][axis], 0);
-  EXPECT_EQ(solution[7][1], 0);
-  NodalVector product = rhs;
-  matrix_.Multiply(solution, 0, mesh_.node_count(), product);
-  for (int node = 0; node < mesh_.node_count(); ++node) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool given = node == 2 || (node == 7 && axis == 1);
-      if (given) continue;
-      const auto n = static_cast<size_t>(node);
-      EXPECT_NEAR(product[n][axis], rhs[n][axis], 1e-8);
+TEST_F(LinearSolver, SolvesWithGivenCoordinatesAtZeroInBothPrecisions) {
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    const std::vector<FixedNode> fixed = {{2, Int64x4{-1, -1, -1, 0}}, {7, Int64x4{0, -1, 0, 0}}};
+    PcgSolver pcg(mesh_.node_count(), fixed, precision);
+    pcg.Prepare(matrix_);
+    // Far outside the range of float, which is no matter of precision.
+    const double size = 1e-60;
+    NodalVector rhs, solution(static_cast<size_t>(mesh_.node_count()));
+    for (int node = 0; node < mesh_.node_count(); ++node)
+      rhs.push_back(size * Double4{std::sin(node), std::cos(3 * node), 1.0 / (node + 1), 0});
+    const StopFlag stop;
+    const auto result = pcg.Solve(matrix_, rhs, 1e-10, stop, solution);
+    ASSERT_TRUE(result.ok());
+    EXPECT_TRUE(result->positive);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(solution[2][axis], 0);
+    EXPECT_EQ(solution[7][1], 0);
+    NodalVector product = rhs;
+    matrix_.Multiply(solution, 1, 0, mesh_.node_count(), product);
+    for (int node = 0; node < mesh_.node_count(); ++node) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool given = node == 2 || (node == 7 && axis == 1);
+        if (given) continue;
+        const auto n = static_cast<size_t>(node);
+        EXPECT_NEAR(product[n][axis], rhs[n][axis],
+                    (precision == Precision::kFloat ? 1e-5 : 1e-8) * size);
+      }
     }
   }
 }
@@ -120,7 +125,7 @@ TEST_F(LinearSolver, NoticesAnIndefiniteMatrix) {
   for (float& entry : blocks) entry = 0;
   for (int k = 0; k < 9; k += 4) blocks[static_cast<size_t>(k)] = -1;
   matrix_.Finish(inertia_);
-  PcgSolver pcg(mesh_.node_count(), {});
+  PcgSolver pcg(mesh_.node_count(), {}, Precision::kDouble);
   pcg.Prepare(matrix_);
   NodalVector rhs(static_cast<size_t>(mesh_.node_count()), Double4{1, 0, 0, 0}), solution = rhs;
   rhs[0] = Double4{-1, 2, 0, 0};
@@ -131,7 +136,7 @@ TEST_F(LinearSolver, NoticesAnIndefiniteMatrix) {
 }
 
 TEST_F(LinearSolver, StopsWhenAsked) {
-  PcgSolver pcg(mesh_.node_count(), {});
+  PcgSolver pcg(mesh_.node_count(), {}, Precision::kDouble);
   pcg.Prepare(matrix_);
   NodalVector rhs(static_cast<size_t>(mesh_.node_count()), Double4{1, 2, 3, 0}), solution = rhs;
   rhs[0] = Double4{-1, 2, 0, 0};

@@ -118,6 +118,7 @@ constexpr char kEveryField[] = R"pb(
     step_tolerance: 1e-6
     linear_tolerance: 1e-2
     max_step_halvings: 2
+    precision: PRECISION_FLOAT
   }
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
