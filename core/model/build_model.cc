@@ -16,6 +16,7 @@
 #include "core/model/collider_term.h"
 #include "core/model/elastic_term.h"
 #include "core/model/impurities.h"
+#include "core/model/load_terms.h"
 #include "core/model/weakened_edges.h"
 #include "core/scene/selection.h"
 
@@ -36,6 +37,17 @@ std::vector<int32_t> NodesOf(const std::string& name, const Scene& scene, const 
   for (int32_t& node : nodes) node = order.new_node[static_cast<size_t>(node)];
   std::sort(nodes.begin(), nodes.end());
   return nodes;
+}
+
+// Adds the rule for `release`, if there is one; its place in Model::releases, or -1.
+int32_t AddRelease(const std::optional<Release>& release, const Scene& scene, const TetMesh& mesh,
+                   Model& model) {
+  if (!release) return -1;
+  ReleaseRule& rule = model.releases.emplace_back();
+  rule.when = *release;
+  for (const std::string& set : release->separated_node_sets)
+    rule.separated.push_back(NodesOf(set, scene, mesh, model.order));
+  return static_cast<int32_t>(model.releases.size()) - 1;
 }
 
 // How many families of fibres stiffen a material.
@@ -260,7 +272,16 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     part.center = ToDouble4(motion.rotation_center);
     part.axis = ToDouble4(motion.rotation_axis);
     part.axis /= std::sqrt(Dot(part.axis, part.axis));
+    part.release = AddRelease(motion.release, scene, mesh, model);
     model.motions.push_back(std::move(part));
+  }
+
+  // Loads, a term each.
+  for (const Load& load : scene.loads) {
+    std::vector<int32_t> nodes = NodesOf(load.node_set, scene, mesh, model.order);
+    std::erase_if(nodes, [&](int32_t n) { return model.masses[static_cast<size_t>(n)] == 0; });
+    model.node_terms.push_back(MakeLoadTerm(load, std::move(nodes), *model.mesh, *model.incidence,
+                                            AddRelease(load.release, scene, mesh, model)));
   }
 
   // Colliders. Those that move bring unknowns of their own.
@@ -329,6 +350,7 @@ State InitialState(const Scene& scene, const TetMesh& mesh, const Model& model) 
   State state;
   state.displacements.assign(model.masses.size(), Splat(0));
   state.velocities = state.displacements;
+  state.released.assign(model.releases.size(), 0);
   for (const InitialVelocity& initial : scene.initial_velocities) {
     const Vec3& spin = initial.angular_velocity;
     for (const int32_t node : NodesOf(initial.node_set, scene, mesh, model.order)) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "core/model/collider_term.h"
 #include "core/model/edge_projected_term.h"
 #include "core/model/elastic_term.h"
+#include "core/model/load_terms.h"
 #include "core/model/nodal_vector.h"
 
 namespace cleave {
@@ -76,6 +78,14 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
                                   static_cast<int64_t>(sizeof(Keyframe));
     add("motions", bytes);
   }
+  if (!scene.loads.empty()) {
+    int64_t bytes = nodes * kNodal;  // their forces
+    for (const Load& load : scene.loads) {
+      bytes += LoadTermBytes(load, nodes) + static_cast<int64_t>(load.keyframes.size()) *
+                                                static_cast<int64_t>(sizeof(LoadKeyframe));
+    }
+    add("loads", bytes);
+  }
   if (!scene.initial_velocities.empty()) add("initial velocities", 0);
   if (!scene.colliders.empty()) {
     int64_t bytes = nodes * ColliderTerm::BytesPerNode() + (uniform ? 1 : nodes) * kDouble;
@@ -86,6 +96,16 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     }
     add("colliders", bytes);
   }
+  int64_t release_bytes = 0;
+  const auto add_release = [&](const std::optional<Release>& release) {
+    if (!release) return;
+    // What fracture has come to is kept once, the named sets each.
+    if (release_bytes == 0) release_bytes = nodes * kInt;
+    release_bytes += static_cast<int64_t>(release->separated_node_sets.size()) * nodes * kInt;
+  };
+  for (const Motion& motion : scene.motions) add_release(motion.release);
+  for (const Load& load : scene.loads) add_release(load.release);
+  if (release_bytes > 0) add("releases", release_bytes);
   const bool breaks = CanBreak(scene);
   bool directional = false;
   for (const Material& material : scene.materials) {

@@ -15,6 +15,7 @@
 #include "core/model/nodal_vector.h"
 #include "core/model/node_term.h"
 #include "core/model/prescribed_motion.h"
+#include "core/model/release.h"
 #include "core/model/tet_term.h"
 #include "core/scene/scene.h"
 
@@ -60,6 +61,7 @@ struct Model {
   const ColliderTerm* colliders = nullptr;  // one of the node terms, where the scene has any
   std::optional<Vec3> gravity;              // m/s^2
   std::vector<PrescribedMotion> motions;
+  std::vector<ReleaseRule> releases;  // of motions and loads
   std::optional<FracturePart> fracture;
   Quality quality;
 
@@ -70,8 +72,9 @@ struct Model {
 
 // How the body is at an instant; a record an unknown.
 struct State {
-  NodalVector displacements;  // m, from rest
-  NodalVector velocities;     // m/s
+  NodalVector displacements;      // m, from rest
+  NodalVector velocities;         // m/s
+  std::vector<uint8_t> released;  // a rule of Model::releases each: 1 once it was due
 };
 
 }  // namespace cleave

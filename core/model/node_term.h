@@ -2,6 +2,7 @@
 #define CLEAVE_CORE_MODEL_NODE_TERM_H_
 
 #include <cstdint>
+#include <span>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -30,6 +31,10 @@ class NodeTerm {
   // Bytes that this term holds.
   virtual int64_t bytes() const = 0;
 
+  // Tells the damage factors, a tet each, 0 for dead tets. Called before BeginStep where they may
+  // have changed since the last call.
+  virtual void SetDamage(std::span<const double> factors) { (void)factors; }
+
   // The longest part (s) of a step from `start` to `end` that this term can follow, with the body's
   // state at the start; a longer step is cut into equal parts.
   virtual double LongestPart(double start, double end, const State& state) const {
@@ -43,8 +48,8 @@ class NodeTerm {
   virtual void BeginStep(double start, double end, const State& state) = 0;
   // Adds -dE/dx (N) at displacements from rest (m) to `forces`; returns the energy E, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
-  // Adds a positive semidefinite second derivative of E. Nothing where forces do not depend on
-  // displacements.
+  // Adds the second derivative of E or a positive semidefinite stand-in for it. Nothing where
+  // forces do not depend on displacements.
   virtual void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) {
     (void)displacements;
     (void)couplings;

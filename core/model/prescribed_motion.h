@@ -15,8 +15,9 @@ struct PrescribedMotion {
   std::vector<int32_t> nodes;   // the solver's ids, ascending
   Int64x4 axes = {0, 0, 0, 0};  // all ones along prescribed axes, 0 elsewhere and in the last lane
   std::vector<Keyframe> keyframes;
-  Double4 center;  // m, of the rotation
-  Double4 axis;    // of the rotation, unit length
+  Double4 center;        // m, of the rotation
+  Double4 axis;          // of the rotation, unit length
+  int32_t release = -1;  // its place in Model::releases; -1: never let go
 };
 
 // Where a body that follows `motion` is at `time` (s): keyframes interpolated, held before the

@@ -2,6 +2,7 @@
 #define CLEAVE_CORE_SCENE_CHECKER_H_
 
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -75,6 +76,15 @@ class Checker {
  private:
   Faults& faults_;
 };
+
+// `name` must be one of `names`, those of the node sets.
+inline void CheckSetName(absl::string_view field, const std::string& name,
+                         const std::set<std::string>& names, Faults& faults) {
+  if (names.count(name) > 0) return;
+  faults.Error(field, name.empty() ? std::string("is empty; the name of a node set is required")
+                                   : absl::StrCat("\"", name.substr(0, limits::kMaxNameBytes),
+                                                  "\" is not the name of a node set"));
+}
 
 }  // namespace cleave
 

@@ -27,6 +27,11 @@ inline constexpr double kMaxSteepness = 100;  // k: strengths span a factor of 2
 inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly differ from here on
 inline constexpr double kMaxDensity = 1e6;    // kg/m^3; osmium has 22 590
 
+inline constexpr double kMaxPressure =
+    kMaxYoungsModulus;                        // Pa; more crushes any material to nothing
+inline constexpr double kMaxForce = 1e15;     // N, the weight of a mountain
+inline constexpr double kMaxIntensity = 1e9;  // of a load, times its value
+
 inline constexpr int64_t kMaxColliders = 100;              // every node near the body looks at each
 inline constexpr int64_t kMaxColliderTriangles = 200'000;  // sent inside the scene
 inline constexpr double kMaxFriction = 10;                 // from here on nothing slides

@@ -138,7 +138,20 @@ struct Keyframe {
   double rotation = 0;        // rad about the motion's axis, before the translation
 };
 
-// Prescribes the motion of a node set; without keyframes it pins the set where it rests.
+// When a motion or load ends for good: with the first step that begins when any of these holds.
+// Nodes that a motion lets go keep the velocity that they had. Edges cut before the first step are
+// not broken by it.
+struct Release {
+  std::optional<double> time = std::nullopt;          // s, at or after
+  bool first_fracture = false;                        // an edge has broken
+  std::optional<double> broken_share = std::nullopt;  // at least this share of all edges has broken
+  // The body is in at least so many; lone nodes do not count.
+  std::optional<int32_t> pieces = std::nullopt;
+  std::vector<std::string> separated_node_sets = {};  // no piece holds nodes of two of these
+};
+
+// Prescribes the motion of a node set; without keyframes it pins the set where it rests. A line of
+// pinned nodes is a hinge: the body is free to turn about it.
 struct Motion {
   std::string node_set;
   std::array<bool, 3> axes{true, true,
@@ -146,6 +159,39 @@ struct Motion {
   std::vector<Keyframe> keyframes;  // by ascending time
   Vec3 rotation_center{0, 0, 0};    // m
   Vec3 rotation_axis{0, 0, 1};      // any length but 0
+  std::optional<Release> release;   // absent: never
+};
+
+// A force that the nodes of the set share evenly. A node that no live tet is left at takes its
+// share with it.
+struct PointForce {
+  Vec3 total{0, 0, 0};  // N
+};
+// A force per rest area on boundary faces, in a fixed direction.
+struct SurfaceTraction {
+  Vec3 traction{0, 0, 0};  // Pa
+};
+// A force per current area on boundary faces that follows their normals and pushes on the body
+// where it is positive.
+struct SurfacePressure {
+  double pressure = 0;  // Pa
+};
+using LoadKind = std::variant<std::monostate, PointForce, SurfaceTraction, SurfacePressure>;
+
+// How strong a load is at a time. Linear between keyframes, as the first before it and as the last
+// after it.
+struct LoadKeyframe {
+  double time = 0;       // s
+  double intensity = 1;  // times the load
+};
+
+// A load on a node set; of tractions and pressures, on the faces of the mesh's boundary with all
+// three nodes in it, for as long as their tets live. Cracks do not open faces to loads.
+struct Load {
+  std::string node_set;
+  LoadKind kind;
+  std::vector<LoadKeyframe> keyframes;  // by ascending time; empty: full strength throughout
+  std::optional<Release> release;       // absent: never
 };
 
 // Velocity of nodes at the start.
@@ -329,6 +375,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<NodeSet> node_sets;
   std::vector<Motion> motions;
+  std::vector<Load> loads;
   std::vector<InitialVelocity> initial_velocities;
   std::optional<Vec3> gravity;  // m/s^2
   Fracture fracture;

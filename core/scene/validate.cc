@@ -12,6 +12,7 @@
 #include "core/scene/collider_rules.h"
 #include "core/scene/keyframe_rules.h"
 #include "core/scene/limits.h"
+#include "core/scene/load_rules.h"
 #include "core/scene/material_rules.h"
 #include "core/scene/selection.h"
 
@@ -97,14 +98,6 @@ void CheckNodeSets(const Scene& scene, std::set<std::string>& names, Faults& fau
       std::visit(SelectorRules{At(select, k), faults, check}, set.select[k]);
     }
   }
-}
-
-void CheckSetName(const std::string& field, const std::string& name,
-                  const std::set<std::string>& names, Faults& faults) {
-  if (names.count(name) > 0) return;
-  faults.Error(field, name.empty() ? std::string("is empty; the name of a node set is required")
-                                   : absl::StrCat("\"", name.substr(0, limits::kMaxNameBytes),
-                                                  "\" is not the name of a node set"));
 }
 
 void CheckMotions(const Scene& scene, const std::set<std::string>& names, Faults& faults,
@@ -308,6 +301,7 @@ void CheckSelections(const Scene& scene, const TetMesh& mesh, const RegionIndex&
       }
     }
   }
+  CheckLoadedNodes(scene, mesh, nodes_of, faults);
 }
 
 }  // namespace
@@ -322,6 +316,7 @@ Faults ValidateScene(const Scene& scene) {
   std::set<std::string> names;
   CheckNodeSets(scene, names, faults, check);
   CheckMotions(scene, names, faults, check);
+  CheckLoads(scene, names, faults, check);
   CheckInitialVelocities(scene, names, faults, check);
   if (scene.gravity.has_value()) check.Coordinates("gravity", *scene.gravity);
   CheckWeakenings(scene, names, faults, check);

@@ -15,7 +15,8 @@ Faults ValidateScene(const Scene& scene);
 
 // The rules that need the mesh, for a scene that passed ValidateScene and a mesh that passed
 // CheckAndOrientMesh, in metres: regions that materials and selectors name exist, every tet has a
-// material, node sets are not empty, ids are in range, prescribed axes do not collide.
+// material, node sets are not empty, ids are in range, prescribed axes do not collide, loads on
+// surfaces find faces, sets that a release waits to see apart share no node.
 Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace cleave

@@ -124,6 +124,34 @@ void PutCollider(const Collider& collider, ByteWriter& out) {
   out.Put(collider.margin);
 }
 
+void PutRelease(const std::optional<Release>& release, ByteWriter& out) {
+  out.Put<uint8_t>(release.has_value());
+  if (!release) return;
+  out.Put<uint8_t>(release->time.has_value());
+  out.Put(release->time.value_or(0));
+  out.Put<uint8_t>(release->first_fracture);
+  out.Put<uint8_t>(release->broken_share.has_value());
+  out.Put(release->broken_share.value_or(0));
+  out.Put<uint8_t>(release->pieces.has_value());
+  out.Put(release->pieces.value_or(0));
+  out.Put<uint64_t>(release->separated_node_sets.size());
+  for (const std::string& set : release->separated_node_sets) PutText(set, out);
+}
+
+void PutLoad(const Load& load, ByteWriter& out) {
+  PutText(load.node_set, out);
+  out.Put<uint64_t>(load.kind.index());
+  if (const auto* force = std::get_if<PointForce>(&load.kind)) {
+    out.Put(force->total);
+  } else if (const auto* traction = std::get_if<SurfaceTraction>(&load.kind)) {
+    out.Put(traction->traction);
+  } else if (const auto* pressure = std::get_if<SurfacePressure>(&load.kind)) {
+    out.Put(pressure->pressure);
+  }
+  out.PutVector(load.keyframes);
+  PutRelease(load.release, out);
+}
+
 template <typename T>
 void Update(const std::vector<T>& items, StateHash& hash) {
   const uint64_t count = items.size();
@@ -171,7 +199,10 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     PutKeyframes(motion.keyframes, out);
     out.Put(motion.rotation_center);
     out.Put(motion.rotation_axis);
+    PutRelease(motion.release, out);
   }
+  out.Put<uint64_t>(scene.loads.size());
+  for (const Load& load : scene.loads) PutLoad(load, out);
   out.Put<uint64_t>(scene.initial_velocities.size());
   for (const InitialVelocity& initial : scene.initial_velocities) {
     PutText(initial.node_set, out);

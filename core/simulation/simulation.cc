@@ -91,7 +91,8 @@ class BodySimulation final : public Simulation {
     report.friction_dissipation = energies_.friction_dissipation;
     report.integration_dissipation = energies_.integration_dissipation;
     report.fragments = fragments_;
-    report.motion_forces = SumMotionForces(model_, stepper_.solver().outer_forces());
+    report.motion_forces =
+        SumMotionForces(model_, state_.released, stepper_.solver().outer_forces());
     if (model_.colliders != nullptr) {
       for (const ColliderPose& pose : model_.colliders->Poses(time(), state_)) {
         const Eigen::Vector3d translation = pose.to - pose.turn * pose.from;
@@ -121,6 +122,7 @@ class BodySimulation final : public Simulation {
     out.Put(energies_);
     out.PutVector(state_.displacements);
     out.PutVector(state_.velocities);
+    if (!model_.releases.empty()) out.PutVector(state_.released);
     out.PutBytes(SaveParts());
     out.Put(Crc32c(saved));
     return saved;
@@ -145,9 +147,11 @@ class BodySimulation final : public Simulation {
     State state;
     state.displacements = in.GetVector<Double4>();
     state.velocities = in.GetVector<Double4>();
+    if (!model_.releases.empty()) state.released = in.GetVector<uint8_t>();
     if (!in.ok()) return absl::DataLossError("the saved state is truncated");
     if (frame < 0 || state.displacements.size() != state_.displacements.size() ||
-        state.velocities.size() != state_.velocities.size())
+        state.velocities.size() != state_.velocities.size() ||
+        state.released.size() != state_.released.size())
       return absl::DataLossError("the saved state contradicts itself");
     const std::string parts_before = SaveParts();
     absl::Status status = stepper_.Restore(in);

@@ -3,14 +3,22 @@
 #include <algorithm>
 
 namespace cleave {
+namespace {
 
-std::vector<FixedNode> FindFixedNodes(const Model& model) {
+bool Holds(const PrescribedMotion& motion, const std::vector<uint8_t>& released) {
+  return motion.release < 0 || released[static_cast<size_t>(motion.release)] == 0;
+}
+
+}  // namespace
+
+std::vector<FixedNode> FindFixedNodes(const Model& model, const std::vector<uint8_t>& released) {
   std::vector<FixedNode> all;
   for (size_t node = 0; node < model.masses.size(); ++node) {
     if (model.masses[node] == 0)
       all.push_back({static_cast<int32_t>(node), Int64x4{-1, -1, -1, 0}});
   }
   for (const PrescribedMotion& motion : model.motions) {
+    if (!Holds(motion, released)) continue;
     for (const int32_t node : motion.nodes) all.push_back({node, motion.axes});
   }
   std::stable_sort(all.begin(), all.end(),
@@ -26,8 +34,10 @@ std::vector<FixedNode> FindFixedNodes(const Model& model) {
   return merged;
 }
 
-void ApplyMotions(const Model& model, double time, NodalVector& displacements) {
+void ApplyMotions(const Model& model, const std::vector<uint8_t>& released, double time,
+                  NodalVector& displacements) {
   for (const PrescribedMotion& motion : model.motions) {
+    if (!Holds(motion, released)) continue;
     const Keyframe pose = PoseAt(motion, time);
     for (const int32_t node : motion.nodes) {
       const auto n = static_cast<size_t>(node);
@@ -37,11 +47,14 @@ void ApplyMotions(const Model& model, double time, NodalVector& displacements) {
   }
 }
 
-std::vector<Vec3> SumMotionForces(const Model& model, const NodalVector& forces) {
+std::vector<Vec3> SumMotionForces(const Model& model, const std::vector<uint8_t>& released,
+                                  const NodalVector& forces) {
   std::vector<Vec3> sums;
   for (const PrescribedMotion& motion : model.motions) {
     Double4 sum = Splat(0);
-    for (const int32_t node : motion.nodes) sum += forces[static_cast<size_t>(node)];
+    if (Holds(motion, released)) {
+      for (const int32_t node : motion.nodes) sum += forces[static_cast<size_t>(node)];
+    }
     sums.push_back(ToVec3(motion.axes ? sum : Splat(0)));
   }
   return sums;

@@ -17,16 +17,20 @@ struct FixedNode {
   Int64x4 axes;  // all ones along given axes, 0 along free ones and in the last lane
 };
 
+// In what follows `released` is State::released; motions that it lets go prescribe nothing.
+
 // Which coordinates of `model` are given: those of prescribed motions, and all of the nodes without
 // mass, which rest. Ascending nodes, each once.
-std::vector<FixedNode> FindFixedNodes(const Model& model);
+std::vector<FixedNode> FindFixedNodes(const Model& model, const std::vector<uint8_t>& released);
 
 // Writes the displacements (m) that the motions prescribe at `time` (s) into their coordinates.
-void ApplyMotions(const Model& model, double time, NodalVector& displacements);
+void ApplyMotions(const Model& model, const std::vector<uint8_t>& released, double time,
+                  NodalVector& displacements);
 
-// Adds up, for each motion, the force on the body over its prescribed coordinates. `forces` (N) are
-// what each node needs from outside to move as it does.
-std::vector<Vec3> SumMotionForces(const Model& model, const NodalVector& forces);
+// Adds up, for each motion, the force on the body over its prescribed coordinates, 0 where it was
+// let go. `forces` (N) are what each node needs from outside to move as it does.
+std::vector<Vec3> SumMotionForces(const Model& model, const std::vector<uint8_t>& released,
+                                  const NodalVector& forces);
 
 }  // namespace cleave
 

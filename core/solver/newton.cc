@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
@@ -32,7 +33,7 @@ constexpr double kFloatOverDouble = 0x1.0p29;
 
 NewtonSolver::NewtonSolver(const Model& model)
     : model_(model),
-      fixed_nodes_(FindFixedNodes(model)),
+      fixed_nodes_(FindFixedNodes(model, std::vector<uint8_t>(model.releases.size(), 0))),
       gravity_(model.gravity ? ToDouble4(*model.gravity) : Splat(0)),
       blocks_(model.unknown_count()),
       matrix_(model.incidence->edges, model.unknown_count()),
@@ -47,6 +48,11 @@ NewtonSolver::NewtonSolver(const Model& model)
   double squares = 0;
   for (const double mass : model.masses) squares += mass * mass;
   gravity_force_ = std::sqrt(squares * Dot(gravity_, gravity_));
+}
+
+void NewtonSolver::SetFixedNodes(std::vector<FixedNode> fixed_nodes) {
+  fixed_nodes_ = std::move(fixed_nodes);
+  pcg_.SetFixedNodes(fixed_nodes_);
 }
 
 void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& displacements) {

@@ -31,6 +31,10 @@ class NewtonSolver {
   // `model` must outlive the solver.
   explicit NewtonSolver(const Model& model);
 
+  // Which coordinates are given from now on: ascending nodes, each once. At first, those of a state
+  // in which nothing is released.
+  void SetFixedNodes(std::vector<FixedNode> fixed_nodes);
+
   // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
   // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
   // summed norms of inertial, elastic and external forces and the last step moved no coordinate by
@@ -67,7 +71,7 @@ class NewtonSolver {
   absl::Status NotConverged(double relative_residual) const;
 
   const Model& model_;
-  const std::vector<FixedNode> fixed_nodes_;
+  std::vector<FixedNode> fixed_nodes_;
   Double4 gravity_;           // m/s^2
   double gravity_force_ = 0;  // N, norm of all gravity forces
   NodeBlocks blocks_;

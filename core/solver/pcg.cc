@@ -176,6 +176,7 @@ absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
     }));
     if (!(curvature > 0)) {
       result.positive = false;
+      if (result.iterations == 1) solution = direction_;
       break;
     }
     using Scalar = std::remove_reference_t<decltype(V{}[0])>;

@@ -2,6 +2,7 @@
 #define CLEAVE_CORE_SOLVER_PCG_H_
 
 #include <cstdint>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -28,12 +29,16 @@ class PcgSolver {
     bool positive = true;  // no sign that the matrix is not positive definite
   };
 
+  // Counts from the next Prepare on.
+  void SetFixedNodes(std::vector<FixedNode> fixed_nodes) { fixed_nodes_ = std::move(fixed_nodes); }
+
   // Takes the diagonal of `matrix`; call it whenever the matrix changed.
   void Prepare(const StiffnessMatrix& matrix);
 
   // Solves matrix * solution = rhs from 0 until the preconditioned residual norm fell by
   // `tolerance`, or the iteration limit is reached, or the matrix shows itself not positive to
-  // rounding: every iterate lowers the quadratic model, so all of them are worth a line search.
+  // rounding: every iterate lowers the quadratic model, so all of them are worth a line search; of
+  // a matrix that shows it in the first direction, the solution is that direction.
   // Errors: Cancelled, looked for in every iteration.
   absl::StatusOr<Result> Solve(const StiffnessMatrix& matrix, const NodalVector& rhs,
                                double tolerance, const StopFlag& stop, NodalVector& solution);

@@ -18,8 +18,12 @@ constexpr int32_t kMaxParts = 64;
 }  // namespace
 
 Stepper::Stepper(const Model& model)
-    : model_(model), newton_(model), displacements_(model.masses.size()) {
+    : model_(model),
+      newton_(model),
+      fixed_for_(model.releases.size(), 0),
+      displacements_(model.masses.size()) {
   if (model.fracture) breaking_.emplace(model);
+  if (!model.releases.empty()) releases_.emplace(model, breaking());
 }
 
 absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State& state,
@@ -66,15 +70,30 @@ int32_t Stepper::PartCount(double start, double end, const State& state) const {
   return parts > 1 ? static_cast<int32_t>(std::min<double>(parts, kMaxParts)) : 1;
 }
 
+void Stepper::Prepare(double start, State& state) {
+  if (breaking_ && !model_.node_terms.empty() && damage_told_ != breaking_->broken_edge_count()) {
+    damage_told_ = breaking_->broken_edge_count();
+    for (const auto& term : model_.node_terms)
+      term->SetDamage(breaking_->fracture().damage_factors());
+  }
+  if (!releases_) return;
+  releases_->Update(start, breaking(), state);
+  if (state.released != fixed_for_) {
+    newton_.SetFixedNodes(FindFixedNodes(model_, state.released));
+    fixed_for_ = state.released;
+  }
+}
+
 absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, State& state,
                                 StepReport& report) {
   const double dt = end - start;
   if (breaking_) breaking_->Mark();
+  Prepare(start, state);
   for (const auto& term : model_.node_terms) term->BeginStep(start, end, state);
   // Free nodes go on as they moved; given ones are where they will be.
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
-  ApplyMotions(model_, end, displacements_);
+  ApplyMotions(model_, state.released, end, displacements_);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
   // Motions move the body as it was, then it breaks: that way work and fracture energy match. What
   // integration loses is the elastic energy beyond its tangent, the squared change of velocity and
@@ -193,6 +212,8 @@ void Stepper::Save(ByteWriter& out) const {
 
 absl::Status Stepper::Restore(ByteReader& in) {
   const auto elastic_energy = in.Get<double>();
+  damage_told_ = -1;
+  if (releases_) releases_->Forget();
   if (breaking_) CLEAVE_RETURN_IF_ERROR(RestorePart(*breaking_, "fracture", in));
   for (const auto& term : model_.tet_terms)
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));

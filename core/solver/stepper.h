@@ -10,6 +10,7 @@
 #include "core/model/model.h"
 #include "core/solver/breaking.h"
 #include "core/solver/newton.h"
+#include "core/solver/releases.h"
 #include "core/solver/step_report.h"
 
 namespace cleave {
@@ -49,6 +50,8 @@ class Stepper {
  private:
   // How many equal parts the node terms want a step to be taken in.
   int32_t PartCount(double start, double end, const State& state) const;
+  // Brings what follows damage and releases up to date before a step at `start` (s).
+  void Prepare(double start, State& state);
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
   // Alternates breaking and solving until no edge fails. Adds the elastic energy lost to
@@ -69,8 +72,11 @@ class Stepper {
   const Model& model_;
   NewtonSolver newton_;
   std::optional<Breaking> breaking_;
-  NodalVector displacements_;  // m, at the end of the step
-  double elastic_energy_ = 0;  // J, of the state
+  std::optional<Releases> releases_;  // where something may be released
+  std::vector<uint8_t> fixed_for_;    // State::released that the solver's fixed nodes are of
+  int64_t damage_told_ = -1;          // broken edges of the damage that node terms know; -1: none
+  NodalVector displacements_;         // m, at the end of the step
+  double elastic_energy_ = 0;         // J, of the state
 };
 
 // J.

@@ -296,6 +296,7 @@ class Converter {
     motion.rotation_axis =
         Vector(field + ".rotation_axis", message.rotation_axis(), motion.rotation_axis);
     motion.keyframes = Keyframes(field, message.keyframes());
+    if (message.has_release()) motion.release = OneRelease(message.release());
     return motion;
   }
 
@@ -373,6 +374,44 @@ class Converter {
     return collider;
   }
 
+  Release OneRelease(const v1::Release& message) {
+    Release release;
+    if (message.has_time()) release.time = message.time();
+    release.first_fracture = message.first_fracture();
+    if (message.has_broken_share()) release.broken_share = message.broken_share();
+    if (message.has_pieces()) release.pieces = message.pieces();
+    release.separated_node_sets.assign(message.separated_node_sets().begin(),
+                                       message.separated_node_sets().end());
+    return release;
+  }
+
+  Load OneLoad(const std::string& field, const v1::Load& message) {
+    Load load;
+    load.node_set = message.node_set();
+    switch (message.kind_case()) {
+      case v1::Load::kForce:
+        load.kind =
+            PointForce{RequiredVector(field + ".force.total", message.force().total(), {0, 0, 0})};
+        break;
+      case v1::Load::kTraction:
+        load.kind = SurfaceTraction{
+            RequiredVector(field + ".traction.traction", message.traction().traction(), {0, 0, 0})};
+        break;
+      case v1::Load::kPressure:
+        load.kind = SurfacePressure{message.pressure().pressure()};
+        break;
+      case v1::Load::KIND_NOT_SET:
+        break;
+    }
+    for (const v1::LoadKeyframe& from : message.keyframes()) {
+      LoadKeyframe& keyframe = load.keyframes.emplace_back();
+      keyframe.time = from.time();
+      if (from.has_intensity()) keyframe.intensity = from.intensity();
+    }
+    if (message.has_release()) load.release = OneRelease(message.release());
+    return load;
+  }
+
  private:
   Faults& faults_;
 };
@@ -446,6 +485,8 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
     scene.motions.push_back(
         convert.OneMotion(absl::StrCat("motions[", i, "]"), message.motions(i)));
   }
+  for (int i = 0; i < message.loads_size(); ++i)
+    scene.loads.push_back(convert.OneLoad(absl::StrCat("loads[", i, "]"), message.loads(i)));
   for (int i = 0; i < message.initial_velocities_size(); ++i) {
     const v1::InitialVelocity& start = message.initial_velocities(i);
     const std::string field = absl::StrCat("initial_velocities[", i, "].");

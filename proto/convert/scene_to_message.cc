@@ -124,6 +124,29 @@ void Write(const std::vector<Keyframe>& keyframes,
   }
 }
 
+void WriteRelease(const Release& release, v1::Release* message) {
+  if (release.time.has_value()) message->set_time(*release.time);
+  message->set_first_fracture(release.first_fracture);
+  if (release.broken_share.has_value()) message->set_broken_share(*release.broken_share);
+  if (release.pieces.has_value()) message->set_pieces(*release.pieces);
+  for (const std::string& set : release.separated_node_sets) message->add_separated_node_sets(set);
+}
+
+struct WriteLoadKind {
+  v1::Load* message;
+
+  void operator()(std::monostate) const {}
+  void operator()(const PointForce& force) const {
+    Write(force.total, message->mutable_force()->mutable_total());
+  }
+  void operator()(const SurfaceTraction& traction) const {
+    Write(traction.traction, message->mutable_traction()->mutable_traction());
+  }
+  void operator()(const SurfacePressure& pressure) const {
+    message->mutable_pressure()->set_pressure(pressure.pressure);
+  }
+};
+
 void WriteMotion(const Motion& motion, v1::Motion* message) {
   message->set_node_set(motion.node_set);
   for (int axis = 0; axis < 3; ++axis) {
@@ -134,6 +157,18 @@ void WriteMotion(const Motion& motion, v1::Motion* message) {
   Write(motion.keyframes, message->mutable_keyframes());
   Write(motion.rotation_center, message->mutable_rotation_center());
   Write(motion.rotation_axis, message->mutable_rotation_axis());
+  if (motion.release.has_value()) WriteRelease(*motion.release, message->mutable_release());
+}
+
+void WriteLoad(const Load& load, v1::Load* message) {
+  message->set_node_set(load.node_set);
+  std::visit(WriteLoadKind{message}, load.kind);
+  for (const LoadKeyframe& keyframe : load.keyframes) {
+    v1::LoadKeyframe* to = message->add_keyframes();
+    to->set_time(keyframe.time);
+    to->set_intensity(keyframe.intensity);
+  }
+  if (load.release.has_value()) WriteRelease(*load.release, message->mutable_release());
 }
 
 struct WriteShape {
@@ -292,6 +327,7 @@ v1::Scene MessageFromScene(const Scene& scene) {
     }
   }
   for (const Motion& motion : scene.motions) WriteMotion(motion, message.add_motions());
+  for (const Load& load : scene.loads) WriteLoad(load, message.add_loads());
   for (const InitialVelocity& start : scene.initial_velocities) {
     v1::InitialVelocity* to = message.add_initial_velocities();
     to->set_node_set(start.node_set);

@@ -63,6 +63,15 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   AddMotion(scene, "any");
   expect_adds(scene, "motions");
   scene = minimal;
+  scene.loads.push_back({"any", PointForce{{1, 0, 0}}, {}, {}});
+  expect_adds(scene, "loads");
+  EXPECT_EQ(BytesOf(Plan(scene), "loads"), 1000 * (32 + 4 + 8 + 32));
+  scene.loads[0].kind = SurfacePressure{1};
+  expect_adds(scene, "loads");
+  scene.loads[0].release = Release{.time = 1};
+  EXPECT_EQ(Names(Plan(scene)).back(), "releases");
+  EXPECT_EQ(BytesOf(Plan(scene), "releases"), 1000 * 4);
+  scene = minimal;
   scene.initial_velocities.emplace_back();
   expect_adds(scene, "initial velocities");
   scene = minimal;
@@ -114,6 +123,23 @@ TEST(Footprint, FibresTakeTheBytesThatWerePlanned) {
   }
 }
 
+TEST(Footprint, LoadsTakeNoMoreThanWasPlanned) {
+  const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
+  for (const LoadKind& kind :
+       {LoadKind(PointForce{{1, 0, 0}}), LoadKind(SurfaceTraction{{1, 0, 0}}),
+        LoadKind(SurfacePressure{1})}) {
+    Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+    AddBoxSet(scene, "all", {-1, -1, -1}, {2, 2, 2});
+    scene.loads.push_back({"all", kind, {{0, 0}, {1, 1}}, {}});
+    const Model model = *BuildModel(scene, mesh);
+    ASSERT_EQ(model.node_terms.size(), 1u);
+    const Footprint footprint =
+        PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+    EXPECT_GT(model.node_terms[0]->bytes(), 0);
+    EXPECT_GE(BytesOf(footprint, "loads"), model.node_terms[0]->bytes());
+  }
+}
+
 TEST(Footprint, ASecondMaterialCostsARecordABatch) {
   Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
   const int64_t uniform = BytesOf(Plan(scene), "elasticity");
@@ -143,6 +169,8 @@ TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
   EXPECT_FALSE(minimal.gravity.has_value());
   EXPECT_FALSE(minimal.fracture.has_value());
   EXPECT_TRUE(minimal.motions.empty());
+  EXPECT_TRUE(minimal.node_terms.empty());
+  EXPECT_TRUE(minimal.releases.empty());
   EXPECT_EQ(minimal.tet_terms.size(), 1u);
   EXPECT_TRUE(minimal.node_terms.empty());
   EXPECT_EQ(minimal.colliders, nullptr);

@@ -203,6 +203,34 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
        [](Scene& s) {
          s.initial_velocities = {{"", {0, kNan, 0}, {}, {}}};
        }},
+      {"motions[0].release", [](Scene& s) { s.motions[0].release = Release{}; }},
+      {"motions[0].release.time", [](Scene& s) { s.motions[0].release = Release{.time = kNan}; }},
+      {"motions[0].release.broken_share",
+       [](Scene& s) { s.motions[0].release = Release{.broken_share = 0}; }},
+      {"motions[0].release.pieces", [](Scene& s) { s.motions[0].release = Release{.pieces = 1}; }},
+      {"motions[0].release.separated_node_sets",
+       [](Scene& s) { s.motions[0].release = Release{.separated_node_sets = {"left"}}; }},
+      {"motions[0].release.separated_node_sets[1]",
+       [](Scene& s) {
+         s.motions[0].release = Release{.separated_node_sets = {"left", "left"}};
+       }},
+      {"motions[0].release.separated_node_sets[1]",
+       [](Scene& s) {
+         s.motions[0].release = Release{.separated_node_sets = {"left", "right"}};
+       }},
+      {"loads[0].node_set", [](Scene& s) { s.loads = {{"right", PointForce{}, {}, {}}}; }},
+      {"loads[0]", [](Scene& s) { s.loads = {{"left", std::monostate(), {}, {}}}; }},
+      {"loads[0].force.total[1]",
+       [](Scene& s) { s.loads = {{"left", PointForce{{0, 1e16, 0}}, {}, {}}}; }},
+      {"loads[0].traction.traction[2]",
+       [](Scene& s) { s.loads = {{"left", SurfaceTraction{{0, 0, kNan}}, {}, {}}}; }},
+      {"loads[0].pressure.pressure",
+       [](Scene& s) { s.loads = {{"left", SurfacePressure{kInf}, {}, {}}}; }},
+      {"loads[0].keyframes[1].time",
+       [](Scene& s) { s.loads = {{"left", SurfacePressure{1}, {{1, 1}, {1, 2}}, {}}}; }},
+      {"loads[0].keyframes[0].intensity",
+       [](Scene& s) { s.loads = {{"left", SurfacePressure{1}, {{1, kInf}}, {}}}; }},
+      {"loads[0].release", [](Scene& s) { s.loads = {{"left", PointForce{}, {}, Release{}}}; }},
       {"gravity[2]",
        [](Scene& s) {
          s.gravity = Vec3{0, 0, kInf};
@@ -284,6 +312,16 @@ TEST(ValidateScene, WarnsWhereDuctilityChangesNothing) {
   EXPECT_EQ(warnings(), 0);  // nothing was to break
 }
 
+TEST(ValidateScene, WarnsOfAReleaseThatNothingCanBring) {
+  Scene scene = GoodScene();
+  scene.motions[0].release = Release{.first_fracture = true};
+  EXPECT_TRUE(ValidateScene(scene).ok());
+  ASSERT_EQ(ValidateScene(scene).warning_count(), 1);
+  EXPECT_EQ(ValidateScene(scene).warnings()[0].field, "motions[0].release");
+  scene.materials[0].tensile_strength = 1e4;
+  EXPECT_EQ(ValidateScene(scene).warning_count(), 0);
+}
+
 TEST(ValidateScene, AcceptsInfiniteStrengthAndHalfSpaces) {
   Scene scene = GoodScene();
   scene.materials[0].tensile_strength = kInf;
@@ -316,6 +354,16 @@ TEST(ValidateSceneWithMesh, NamesTheFieldOfEveryKindOfFault) {
          s.node_sets[0].select[0] = SphereSelector{{9, 9, 9}, 1};
        }},
       {"motions[1].node_set", [](Scene& s) { s.motions.push_back(s.motions[0]); }},
+      {"loads[0].node_set",
+       [](Scene& s) {
+         s.node_sets.push_back({"edge", {IdSelector{{0, 1}}}});
+         s.loads = {{"edge", SurfacePressure{1}, {}, {}}};
+       }},
+      {"loads[0].release.separated_node_sets[1]",
+       [](Scene& s) {
+         s.node_sets.push_back({"corner", {IdSelector{{0, 1}}}});
+         s.loads = {{"left", PointForce{}, {}, Release{.separated_node_sets = {"left", "corner"}}}};
+       }},
       {"impurities.map",
        [](Scene& s) {
          s.impurities = Impurities{.map = {0, 1}};

@@ -96,6 +96,22 @@ constexpr char kEveryField[] = R"pb(
     }
     rotation_center: [ 4, 5, 6 ]
     rotation_axis: [ 1, 1, 0 ]
+    release { time: 0.75 first_fracture: true broken_share: 0.125 pieces: 3 separated_node_sets: [ "grip", "rim" ] }
+  }
+  loads {
+    node_set: "grip"
+    force { total: [ 1, 2, 3 ] }
+    keyframes { time: 0.5 intensity: 0 }
+    keyframes { time: 1 intensity: 2 }
+    release { time: 4 }
+  }
+  loads {
+    node_set: "grip"
+    traction { traction: [ 0, 0, -5 ] }
+  }
+  loads {
+    node_set: "grip"
+    pressure { pressure: -7 }
   }
   initial_velocities {
     node_set: "grip"
@@ -269,6 +285,8 @@ TEST(Scene, ReportsEveryVectorThatIsNotThreeNumbersAndEveryUnknownEnum) {
   message.add_node_sets()->add_select()->mutable_box()->add_min(1);
   message.add_motions()->add_axes(static_cast<v1::Axis>(9));
   message.mutable_motions(0)->add_keyframes()->add_translation(1);
+  message.add_loads()->mutable_force()->add_total(1);
+  message.add_loads()->mutable_traction();
   Faults faults;
   SceneFromMessage(message, faults);
   std::vector<std::string> fields;
@@ -276,7 +294,8 @@ TEST(Scene, ReportsEveryVectorThatIsNotThreeNumbersAndEveryUnknownEnum) {
   EXPECT_THAT(fields, testing::UnorderedElementsAre(
                           "gravity", "mesh.box.size", "mesh.box.resolution.layout",
                           "node_sets[0].select[0].box.min", "node_sets[0].select[0].box.max",
-                          "motions[0].axes[0]", "motions[0].keyframes[0].translation"));
+                          "motions[0].axes[0]", "motions[0].keyframes[0].translation",
+                          "loads[0].force.total", "loads[1].traction.traction"));
 }
 
 }  // namespace
