@@ -164,7 +164,8 @@ class Converter {
     return std::monostate{};
   }
 
-  Material OneMaterial(const std::string& field, const v1::Material& message) {
+  Material OneMaterial(const std::string& field, v1::Material message) {
+    ResolvePreset(field, message, faults_);
     Material material;
     material.name = message.name();
     material.regions.assign(message.regions().begin(), message.regions().end());
@@ -463,6 +464,11 @@ void ReadSettings(const v1::Scene& message, Scene& scene, Faults& faults) {
 }
 
 }  // namespace
+
+Material MaterialFromMessage(const v1::Material& message, const std::string& field,
+                             Faults& faults) {
+  return Converter(faults).OneMaterial(field, message);
+}
 
 Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
   Converter convert(faults);

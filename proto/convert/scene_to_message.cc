@@ -285,39 +285,44 @@ void WriteSettings(const Scene& scene, v1::Scene& message) {
 
 }  // namespace
 
+v1::Material MessageFromMaterial(const Material& material) {
+  v1::Material message;
+  message.set_name(material.name);
+  message.mutable_regions()->Add(material.regions.begin(), material.regions.end());
+  message.set_law(MessageFromLaw(material.law));
+  message.set_youngs_modulus(material.youngs_modulus);
+  message.set_poisson_ratio(material.poisson_ratio);
+  message.set_density(material.density);
+  if (material.tensile_strength.has_value()) {
+    message.set_tensile_strength(*material.tensile_strength);
+  }
+  if (material.compressive_strength.has_value())
+    message.set_compressive_strength(*material.compressive_strength);
+  for (const FibreFamily& family : material.fibres) {
+    v1::FibreFamily* fibres = message.add_fibres();
+    fibres->set_stiffness(family.stiffness);
+    std::visit(WriteDirection{fibres}, family.direction);
+    fibres->set_strength_ratio(family.strength_ratio);
+  }
+  if (material.plasticity.has_value()) {
+    v1::Plasticity* plasticity = message.mutable_plasticity();
+    plasticity->set_yield_stress(material.plasticity->yield_stress);
+    plasticity->set_hardening(material.plasticity->hardening);
+    plasticity->set_flow_rate(material.plasticity->flow_rate);
+    if (material.plasticity->failure_strain.has_value()) {
+      plasticity->set_failure_strain(*material.plasticity->failure_strain);
+    }
+  }
+  return message;
+}
+
 v1::Scene MessageFromScene(const Scene& scene) {
   v1::Scene message;
   message.set_name(scene.name);
   message.mutable_mesh()->set_unit_scale(scene.mesh.unit_scale);
   std::visit(WriteSource{message.mutable_mesh()}, scene.mesh.source);
   for (const Material& material : scene.materials) {
-    v1::Material* to = message.add_materials();
-    to->set_name(material.name);
-    to->mutable_regions()->Add(material.regions.begin(), material.regions.end());
-    to->set_law(MessageFromLaw(material.law));
-    to->set_youngs_modulus(material.youngs_modulus);
-    to->set_poisson_ratio(material.poisson_ratio);
-    to->set_density(material.density);
-    if (material.tensile_strength.has_value()) {
-      to->set_tensile_strength(*material.tensile_strength);
-    }
-    if (material.compressive_strength.has_value())
-      to->set_compressive_strength(*material.compressive_strength);
-    for (const FibreFamily& family : material.fibres) {
-      v1::FibreFamily* fibres = to->add_fibres();
-      fibres->set_stiffness(family.stiffness);
-      std::visit(WriteDirection{fibres}, family.direction);
-      fibres->set_strength_ratio(family.strength_ratio);
-    }
-    if (material.plasticity.has_value()) {
-      v1::Plasticity* plasticity = to->mutable_plasticity();
-      plasticity->set_yield_stress(material.plasticity->yield_stress);
-      plasticity->set_hardening(material.plasticity->hardening);
-      plasticity->set_flow_rate(material.plasticity->flow_rate);
-      if (material.plasticity->failure_strain.has_value()) {
-        plasticity->set_failure_strain(*material.plasticity->failure_strain);
-      }
-    }
+    *message.add_materials() = MessageFromMaterial(material);
   }
   for (const NodeSet& set : scene.node_sets) {
     v1::NodeSet* to = message.add_node_sets();

@@ -101,15 +101,16 @@ v1::Plan PlanOf(const Scene& scene, const TetMesh& mesh) {
 absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults& request_faults,
                                           AssetStore& assets, bool store_mesh) {
   Faults faults;
-  const Scene scene = SceneFromMessage(message, faults);
+  AcceptedScene accepted;
+  accepted.scene = message;
+  ResolvePresets(accepted.scene, faults);  // a session keeps the numbers, whatever presets become
+  const Scene scene = SceneFromMessage(accepted.scene, faults);
   faults.Append("", ValidateScene(scene));
   std::optional<TetMesh> mesh;
   if (MeshIsSound(faults)) {
     CLEAVE_ASSIGN_OR_RETURN(
         mesh, ObtainMesh(scene.mesh, assets, !(faults.ok() && request_faults.ok()), faults));
   }
-  AcceptedScene accepted;
-  accepted.scene = message;
   if (mesh.has_value()) {
     if (store_mesh && faults.ok() && request_faults.ok() &&
         !std::holds_alternative<MeshAsset>(scene.mesh.source)) {

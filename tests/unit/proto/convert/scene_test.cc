@@ -5,6 +5,8 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
+#include "core/scene/presets.h"
+
 namespace cleave {
 namespace {
 
@@ -264,6 +266,63 @@ TEST(Scene, KeepsEveryMeshSource) {
     EXPECT_EQ(once.mesh().source_case(), message.mesh().source_case());
     EXPECT_TRUE(MessageDifferencer::Equals(once, MessageFromScene(SceneFromMessage(once, faults))));
   }
+}
+
+TEST(Scene, TakesFromAPresetWhatAMaterialDoesNotSay) {
+  v1::Scene message;
+  ASSERT_TRUE(TextFormat::ParseFromString(
+      R"pb(materials { preset: "dry_wood" density: 500 }
+           materials {
+             name: "plank"
+             preset: "dry_wood"
+             poisson_ratio: 0
+             law: ELASTIC_LAW_COROTATED_LINEAR
+             fibres { constant { vector: [ 0, 0, 1 ] } }
+             fibres {
+               stiffness: 5
+               constant { vector: [ 0, 1, 0 ] }
+             }
+           })pb",
+      &message));
+  Faults faults;
+  const Scene scene = SceneFromMessage(message, faults);
+  EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+  const Material wood = FindMaterialPreset("dry_wood")->material;
+  const Material& beam = scene.materials[0];
+  EXPECT_EQ(beam.name, "dry_wood");
+  EXPECT_EQ(beam.youngs_modulus, wood.youngs_modulus);
+  EXPECT_EQ(beam.density, 500);
+  EXPECT_EQ(beam.tensile_strength, wood.tensile_strength);
+  ASSERT_EQ(beam.fibres.size(), 1u);
+  EXPECT_EQ(beam.fibres[0].stiffness, wood.fibres[0].stiffness);
+
+  const Material& plank = scene.materials[1];
+  EXPECT_EQ(plank.name, "plank");
+  EXPECT_EQ(plank.poisson_ratio, 0);
+  EXPECT_EQ(plank.law, ElasticLaw::kCorotatedLinear);
+  ASSERT_EQ(plank.fibres.size(), 2u);
+  EXPECT_EQ(plank.fibres[0].stiffness, wood.fibres[0].stiffness);
+  EXPECT_EQ(plank.fibres[0].strength_ratio, wood.fibres[0].strength_ratio);
+  EXPECT_EQ(std::get<ConstantDirection>(plank.fibres[0].direction).vector, (Vec3{0, 0, 1}));
+  EXPECT_EQ(plank.fibres[1].stiffness, 5);
+
+  // Resolved, the message says the same without the name of the preset.
+  ResolvePresets(message, faults);
+  EXPECT_TRUE(message.materials(0).preset().empty());
+  EXPECT_TRUE(MessageDifferencer::Equals(MessageFromScene(scene),
+                                         MessageFromScene(SceneFromMessage(message, faults))));
+}
+
+TEST(Scene, NamesThePresetsThereAreWhereOneIsNot) {
+  v1::Scene message;
+  message.add_materials()->set_preset("oak");
+  Faults faults;
+  ResolvePresets(message, faults);
+  SceneFromMessage(message, faults);
+  ASSERT_EQ(faults.errors().size(), 1u);
+  EXPECT_EQ(faults.errors()[0].field, "materials[0].preset");
+  EXPECT_THAT(faults.errors()[0].description,
+              testing::HasSubstr("\"oak\" is not a preset; there are bread, cheese"));
 }
 
 TEST(Scene, TakesDefaultsForAbsentFields) {
