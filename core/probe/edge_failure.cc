@@ -10,36 +10,47 @@
 #include "core/damage/edge_thresholds.h"
 
 namespace cleave {
+namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-EdgeFailure WorstEdge(const Matrix3d& stress, const Matrix3d& g,
-                      std::span<const MaterialPoint::Fibre> fibres, double tensile_strength,
-                      const Vector3d& hint) {
-  const auto failure_of = [&](const Vector3d& direction) {
-    const Vector3d turned = direction + g * direction;
-    const std::array<Vec3, 2> rest = {Vec3{0, 0, 0}, {direction[0], direction[1], direction[2]}};
-    const std::array<Vec3, 2> current = {Vec3{0, 0, 0}, {turned[0], turned[1], turned[2]}};
+Vec3 Plain(const Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+EdgeFailure WorstEdge(const Matrix3d& stress, const Matrix3d& g, const PlasticState& plastic,
+                      std::span<const MaterialPoint::Fibre> fibres,
+                      const MaterialStrength& strength, const Vector3d& hint) {
+  const Matrix3d elastic = ElasticChange(g, plastic);
+  // Of an edge whose direction after flow, N_p, is this.
+  const auto failure_of = [&](const Vector3d& flowed) {
+    const Vector3d current = flowed + elastic * flowed;
     EdgeFailure failure;
-    failure.direction = direction;
+    failure.direction = (flowed + plastic.inverse_change * flowed).normalized();
     for (const MaterialPoint::Fibre& fibre : fibres) {
-      failure.strength_factor =
-          std::max(failure.strength_factor,
-                   DirectionalStrengthFactor(fibre.strength_ratio, fibre.direction.dot(direction)));
+      failure.strength_factor = std::max(
+          failure.strength_factor,
+          DirectionalStrengthFactor(fibre.strength_ratio, fibre.direction.dot(failure.direction)));
     }
-    failure.ratio = EdgeDirections({0, 1}, current, rest).Project(stress) /
-                    (tensile_strength * failure.strength_factor);
+    const std::array<Vec3, 2> at_rest = {Vec3{0, 0, 0}, Plain(flowed)};
+    const std::array<Vec3, 2> now = {Vec3{0, 0, 0}, Plain(current)};
+    const double load = EdgeDirections({0, 1}, now, at_rest).Project(stress);
+    failure.crushed = load < 0;
+    failure.ratio = failure.crushed ? -load / strength.compressive
+                                    : load / (strength.tensile * failure.strength_factor);
     return failure;
   };
 
+  Vector3d worst_flowed = hint;
   EdgeFailure worst = failure_of(hint);
-  const auto consider = [&](const Vector3d& direction) {
-    const EdgeFailure failure = failure_of(direction);
+  const auto consider = [&](const Vector3d& flowed) {
+    const EdgeFailure failure = failure_of(flowed);
     // Only what is worse beyond rounding, so that ties do not hop about.
-    const bool worse = failure.ratio > worst.ratio + 1e-12 * std::abs(worst.ratio);
-    if (worse) worst = failure;
-    return worse;
+    if (!(failure.ratio > (1 + 1e-12) * worst.ratio)) return false;
+    worst = failure;
+    worst_flowed = flowed;
+    return true;
   };
   // Directions spread evenly over half a sphere: a spiral whose turns keep the golden angle.
   constexpr int kDirections = 200;
@@ -53,7 +64,7 @@ EdgeFailure WorstEdge(const Matrix3d& stress, const Matrix3d& g,
   // Uphill from there. A maximum is flat: the last step leaves an error of its square.
   double step = 0.1;
   for (int round = 0; round < 1000 && step > 1e-7; ++round) {
-    const Vector3d at = worst.direction;
+    const Vector3d at = worst_flowed;
     const Vector3d side = at.unitOrthogonal();
     const Vector3d other = at.cross(side);
     bool better = false;

@@ -8,6 +8,7 @@
 #include "core/material/fibre.h"
 #include "core/material/invertible_neo_hookean.h"
 #include "core/material/isotropic_stiffness.h"
+#include "core/material/plasticity.h"
 #include "core/material/st_venant_kirchhoff.h"
 #include "core/material/stable_neo_hookean.h"
 
@@ -84,7 +85,9 @@ Matrix3d Turned(const SignedSvd<Double4>& svd, const StiffnessSpectrum<Double4>&
 }  // namespace
 
 MaterialPoint::MaterialPoint(const Material& material, std::span<const Vec3> fibre_directions)
-    : law_(material.law), lame_(ToLame(material.youngs_modulus, material.poisson_ratio)) {
+    : law_(material.law),
+      lame_(ToLame(material.youngs_modulus, material.poisson_ratio)),
+      plasticity_(material.plasticity) {
   for (size_t k = 0; k < material.fibres.size(); ++k) {
     const Vector3d direction(fibre_directions[k].data());
     fibres_.push_back({(direction / direction.cwiseAbs().maxCoeff()).normalized(),
@@ -92,30 +95,34 @@ MaterialPoint::MaterialPoint(const Material& material, std::span<const Vec3> fib
   }
 }
 
-PointResponse MaterialPoint::Respond(const Matrix3d& g) const {
+PointResponse MaterialPoint::Respond(const Matrix3d& g, const PlasticState& plastic) const {
+  const Matrix3d elastic = ElasticChange(g, plastic);
   PointResponse response;
   const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
-  const Matrix3<Double4> batch = Batched(g);
+  const Matrix3<Double4> batch = Batched(elastic);
   WithLaw(law_, [&]<typename Law>(Law) {
     const auto kinematics = Law::KinematicsOf(batch);
     response.energy = Law::Energy(batch, kinematics, lame)[0];
     response.matrix_stress = FirstLane(Law::Stress(batch, kinematics, lame));
   });
-  response.stress = response.matrix_stress;
+  response.elastic_stress = response.matrix_stress;
   for (const Fibre& family : fibres_) {
     if (family.stiffness == 0) continue;
-    const FibreStretch<Double4> fibre = Stretched(g, family.direction);
+    const FibreStretch<Double4> fibre = Stretched(elastic, family.direction);
     const double excess = fibre.excess[0];
     response.energy += 0.5 * family.stiffness * excess * excess;
-    response.stress +=
+    response.elastic_stress +=
         family.stiffness * excess * DirectionOf(fibre) * family.direction.transpose();
   }
+  response.stress =
+      response.elastic_stress + response.elastic_stress * plastic.inverse_change.transpose();
   return response;
 }
 
-Matrix9d MaterialPoint::Tangent(const Matrix3d& g) const {
+Matrix9d MaterialPoint::Tangent(const Matrix3d& g, const PlasticState& plastic) const {
+  const Matrix3d elastic = ElasticChange(g, plastic);
   const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
-  const SignedSvd<Double4> svd = ComputeSvd(Batched(g));
+  const SignedSvd<Double4> svd = ComputeSvd(Batched(elastic));
   const StiffnessSpectrum spectrum =
       WithLaw(law_, [&]<typename Law>(Law) { return Law::Spectrum(svd, lame); });
   Matrix9d tangent;
@@ -127,7 +134,7 @@ Matrix9d MaterialPoint::Tangent(const Matrix3d& g) const {
   }
   for (const Fibre& family : fibres_) {
     if (family.stiffness == 0) continue;
-    const FibreStretch<Double4> fibre = Stretched(g, family.direction);
+    const FibreStretch<Double4> fibre = Stretched(elastic, family.direction);
     const double across = FibreStiffnessAcross(fibre)[0];
     const Vector3d along = DirectionOf(fibre);
     const Matrix3d block = family.stiffness * ((1 - across) * along * along.transpose() +
@@ -138,7 +145,35 @@ Matrix9d MaterialPoint::Tangent(const Matrix3d& g) const {
         tangent(row, column) += block(row / 3, column / 3) * a[row % 3] * a[column % 3];
     }
   }
-  return tangent;
+  if (plastic.strain == 0) return tangent;
+  // P = P_e F_p^-T and F_e = F F_p^-1.
+  const Matrix3d inverse = Matrix3d::Identity() + plastic.inverse_change;
+  Matrix9d turn = Matrix9d::Zero();
+  for (int i = 0; i < 3; ++i) turn.block<3, 3>(3 * i, 3 * i) = inverse;
+  return turn * tangent * turn.transpose();
+}
+
+bool MaterialPoint::Flow(const Matrix3d& g, PlasticState& plastic) const {
+  if (!plasticity_.has_value()) return false;
+  const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
+  const FlowRule<Double4> rule{Splat(plasticity_->yield_stress), Splat(plasticity_->hardening),
+                               Splat(0)};
+  const Matrix3<Double4> elastic = Batched(ElasticChange(g, plastic));
+  const PlasticReturn flow = WithLaw(law_, [&]<typename Law>(Law) {
+    return ReturnToYield<Law>(elastic, lame, rule, Splat(plastic.strain));
+  });
+  if (!(flow.strain[0] > 0)) return false;
+  const Matrix3<Double4> inverse_change = FlowedInverse(Batched(plastic.inverse_change), flow);
+  if (IsWithinPlasticRatio(inverse_change)[0] == 0) return false;
+  plastic.inverse_change = FirstLane(inverse_change);
+  plastic.strain += flow.strain[0];
+  return true;
+}
+
+double MaterialPoint::FlowWork(double plastic_strain) const {
+  if (!plasticity_.has_value()) return 0;
+  return (plasticity_->yield_stress + 0.5 * plasticity_->hardening * plastic_strain) *
+         plastic_strain;
 }
 
 }  // namespace cleave

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/material/fibre_directions.h"
@@ -37,24 +38,35 @@ ProbedPoint Probed(const MaterialPoint& point, const std::array<double, 9>& grad
   Matrix3d g;
   for (int k = 0; k < 9; ++k)
     g(k / 3, k % 3) = gradient[static_cast<size_t>(k)] - (k % 4 == 0 ? 1 : 0);
-  const PointResponse response = point.Respond(g);
-  const Matrix9d tangent = point.Tangent(g);
+  PlasticState plastic;
+  point.Flow(g, plastic);
+  const PointResponse response = point.Respond(g, plastic);
+  const Matrix9d tangent = point.Tangent(g, plastic);
   ProbedPoint probed;
+  probed.plastic_strain = plastic.strain;
   probed.energy = response.energy;
   for (int k = 0; k < 9; ++k) probed.stress[static_cast<size_t>(k)] = response.stress(k / 3, k % 3);
   for (int k = 0; k < 81; ++k) probed.tangent[static_cast<size_t>(k)] = tangent(k / 9, k % 9);
   return probed;
 }
 
+// Why a bar would fail.
+struct Failure {
+  double ratio = 0;
+  CurveEnd end = CurveEnd::kTensileStrength;
+  Vector3d edge;
+};
+
 // Pulls one bar until it fails.
 class PullTest {
  public:
   PullTest(const MaterialProbe& probe, const MaterialPoint& point, const Vector3d& direction)
       : probe_(probe), point_(point), direction_(direction), bar_(point, direction) {
-    if (probe.material.tensile_strength.has_value() &&
-        std::isfinite(*probe.material.tensile_strength)) {
-      strength_ = *probe.material.tensile_strength;
-    }
+    const Material& material = probe.material;
+    strength_.tensile = material.tensile_strength.value_or(strength_.tensile);
+    strength_.compressive = material.compressive_strength.value_or(strength_.compressive);
+    if (material.plasticity.has_value() && material.plasticity->failure_strain.has_value())
+      failure_strain_ = *material.plasticity->failure_strain;
   }
 
   StressStrainCurve Run() {
@@ -63,7 +75,7 @@ class PullTest {
     curve.worst_edge = curve.direction;
     curve.youngs_modulus = bar_.YoungsModulus();
     curve.points.emplace_back();
-    if (strength_ == 0.0) {  // breaks under no load at all
+    if (strength_.tensile == 0) {  // breaks under no load at all
       curve.end = CurveEnd::kTensileStrength;
       return curve;
     }
@@ -73,23 +85,38 @@ class PullTest {
   }
 
  private:
-  EdgeFailure FailureOf(const PulledBar::State& state) const {
-    if (!strength_.has_value()) return EdgeFailure{0, direction_, 1};
-    const Matrix3d& stress = probe_.stress == FractureStress::kMatrix ? state.response.matrix_stress
-                                                                      : state.response.stress;
-    return WorstEdge(stress, state.g, point_.fibres(), *strength_, direction_);
+  Failure FailureOf(const PulledBar::State& state) const {
+    const EdgeFailure edge =
+        WorstEdge(probe_.stress == FractureStress::kMatrix ? state.response.matrix_stress
+                                                           : state.response.elastic_stress,
+                  state.g, state.plastic, point_.fibres(), strength_, direction_);
+    Failure failure{edge.ratio, CurveEnd::kTensileStrength, edge.direction};
+    if (edge.crushed) {
+      failure.end = CurveEnd::kCompressiveStrength;
+    } else if (edge.strength_factor > 1 + 1e-9) {
+      failure.end = CurveEnd::kDirectionalStrength;
+    }
+    const double ductile = state.plastic.strain / failure_strain_;
+    if (ductile > failure.ratio) failure = {ductile, CurveEnd::kFailureStrain, direction_};
+    return failure;
   }
 
-  // Pulls in growing steps, which end_ and the curve's end come from.
+  bool CanFail() const {
+    return std::isfinite(strength_.tensile) || std::isfinite(strength_.compressive) ||
+           std::isfinite(failure_strain_);
+  }
+
+  // Pulls in growing steps, which `passed_` and the curve's end come from.
   void FindEnd(StressStrainCurve& curve) {
     constexpr double kGrowth = 1.3;
-    const double largest = probe_.largest_strain;
-    double strain = 1e-3 * largest;
-    if (strength_.has_value())
-      strain = std::clamp(0.01 * *strength_ / curve.youngs_modulus, 1e-12, strain);
+    const double farthest = probe_.largest_strain.value_or(CanFail() ? 10 : 1);
+    const double largest = std::abs(farthest), sign = farthest < 0 ? -1 : 1;
+    const double weakest = std::min(strength_.tensile, strength_.compressive);
+    double strain =
+        std::min(std::max(0.01 * weakest / curve.youngs_modulus, 1e-12), 1e-3 * largest);
     passed_.push_back(bar_.AtRest());
     while (true) {
-      const std::optional<PulledBar::State> state = bar_.Pull(strain, passed_.back());
+      const std::optional<PulledBar::State> state = bar_.Pull(sign * strain, passed_.back());
       if (!state.has_value()) {
         curve.end = CurveEnd::kNoEquilibrium;
         return;
@@ -105,21 +132,20 @@ class PullTest {
   void NarrowFailure(PulledBar::State failed, StressStrainCurve& curve) {
     for (int halving = 0; halving < 100; ++halving) {
       const PulledBar::State& below = passed_.back();
-      if (failed.strain - below.strain <= 1e-13 * failed.strain) break;
+      const double gap = std::abs(failed.strain - below.strain);
+      if (gap <= 1e-13 * std::abs(failed.strain)) break;
       const std::optional<PulledBar::State> middle =
           bar_.Pull(0.5 * (below.strain + failed.strain), below);
       if (!middle.has_value()) break;
       if (FailureOf(*middle).ratio >= 1) {
         failed = *middle;
-      } else if (middle->strain > below.strain) {
+      } else if (middle->strain != below.strain) {
         passed_.push_back(*middle);
       } else {
         break;
       }
     }
-    const EdgeFailure failure = FailureOf(failed);
-    curve.end = failure.strength_factor > 1 + 1e-9 ? CurveEnd::kDirectionalStrength
-                                                   : CurveEnd::kTensileStrength;
+    curve.end = FailureOf(failed).end;
     passed_.push_back(failed);
   }
 
@@ -129,17 +155,27 @@ class PullTest {
     size_t near = 0;
     for (int k = 1; k <= probe_.samples; ++k) {
       const double strain = k == probe_.samples ? end : end * k / probe_.samples;
-      while (near + 1 < passed_.size() && passed_[near + 1].strain <= strain) ++near;
-      const std::optional<PulledBar::State> state = bar_.Pull(strain, passed_[near]);
+      while (near + 1 < passed_.size() && std::abs(passed_[near + 1].strain) <= std::abs(strain))
+        ++near;
+      // What flowed on the way is that of the nearest state before.
+      const std::optional<PulledBar::State> state =
+          k == probe_.samples ? passed_.back() : bar_.Pull(strain, passed_[near]);
       if (!state.has_value()) {
         curve.end = CurveEnd::kNoEquilibrium;
         return;
       }
-      const EdgeFailure failure = FailureOf(*state);
-      curve.worst_edge = Plain(failure.direction);
-      curve.points.push_back({strain, state->nominal_stress,
-                              state->nominal_stress * (1 + state->strain) / state->volume_ratio,
-                              state->volume_ratio, state->response.energy, failure.ratio});
+      const Failure failure = FailureOf(*state);
+      // An edge has no sign; this one points with the pull.
+      curve.worst_edge =
+          Plain(failure.edge.dot(direction_) < 0 ? Vector3d(-failure.edge) : failure.edge);
+      CurvePoint& point = curve.points.emplace_back();
+      point.strain = strain;
+      point.nominal_stress = state->nominal_stress;
+      point.true_stress = state->nominal_stress * (1 + state->strain) / state->volume_ratio;
+      point.volume_ratio = state->volume_ratio;
+      point.energy = state->response.energy + point_.FlowWork(state->plastic.strain);
+      point.failure_ratio = failure.ratio;
+      point.plastic_strain = state->plastic.strain;
     }
   }
 
@@ -147,7 +183,8 @@ class PullTest {
   const MaterialPoint& point_;
   const Vector3d direction_;
   const PulledBar bar_;
-  std::optional<double> strength_;  // Pa; absent: nothing breaks
+  MaterialStrength strength_;
+  double failure_strain_ = std::numeric_limits<double>::infinity();
   std::vector<PulledBar::State> passed_;
 };
 

@@ -9,12 +9,14 @@
 
 namespace cleave {
 
-// The answer at a deformation gradient; matrices row by row.
+// The answer at a deformation gradient; matrices row by row. A ductile material has flowed from
+// rest until it was at yield.
 struct ProbedPoint {
-  double energy = 0;               // J/m^3
+  double energy = 0;               // J/m^3, elastic
   std::array<double, 9> stress{};  // first Piola-Kirchhoff, Pa
   // d2 psi / dF2, Pa, 9 x 9, not projected: row 3 i + j, column 3 k + l is dP_ij / dF_kl.
-  std::array<double, 81> tangent{};
+  std::array<double, 81> tangent{};  // at fixed flow
+  double plastic_strain = 0;         // equivalent
 };
 
 // Why a stress-strain curve ends.
@@ -22,6 +24,8 @@ enum class CurveEnd {
   kLargestStrain,        // nothing failed up to there
   kTensileStrength,      // an edge's stress reached the tensile strength
   kDirectionalStrength,  // the same, of an edge that the fibres strengthen
+  kCompressiveStrength,  // an edge was crushed
+  kFailureStrain,        // the equivalent plastic strain reached the failure strain
   kNoEquilibrium,        // the material gives way: no bar is at rest beyond
 };
 
@@ -30,11 +34,12 @@ struct CurvePoint {
   double nominal_stress = 0;  // Pa, force over the area at rest
   double true_stress = 0;     // Pa, force over the area now
   double volume_ratio = 1;    // det F
-  double energy = 0;          // J/m^3, work done so far
+  double energy = 0;          // J/m^3, work done so far, that of plastic flow included
   double failure_ratio = 0;   // of the worst edge; 0 where nothing can break
+  double plastic_strain = 0;  // equivalent
 };
 
-// What a slender bar along a direction does when it is pulled apart slowly.
+// What a slender bar along a direction does when it is pulled apart slowly, or pressed.
 struct StressStrainCurve {
   Vec3 direction{0, 0, 0};         // unit
   double youngs_modulus = 0;       // Pa, slope at rest

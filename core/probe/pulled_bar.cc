@@ -9,7 +9,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kMostSteps = 200;
+constexpr int kMostSteps = 100;
+constexpr int kMostFlows = 100;
+constexpr double kLeastFlow = 1e-12;  // relative growth of plastic strain that ends the repetition
 
 // Entries of the deformation gradient in the frame of the bar that the sides leave free. The first
 // column is the stretch, and one entry below the diagonal stays 0: it would only turn the bar about
@@ -29,9 +31,9 @@ Matrix3d PulledBar::Turned(const Matrix3d& matrix) const {
   return frame_.transpose() * matrix * frame_;
 }
 
-PulledBar::Curvature PulledBar::CurvatureAt(const Matrix3d& g, Unknowns* with_strain,
+PulledBar::Curvature PulledBar::CurvatureAt(const State& state, Unknowns* with_strain,
                                             double* of_strain) const {
-  const Matrix9d tangent = point_.Tangent(g);
+  const Matrix9d tangent = point_.Tangent(state.g, state.plastic);
   // The change of P, in the frame, with entry (row, column) of F there.
   const auto changed = [&](int row, int column) {
     const Matrix3d change = frame_.col(row) * frame_.col(column).transpose();
@@ -66,7 +68,7 @@ PulledBar::Curvature PulledBar::CurvatureAt(const Matrix3d& g, Unknowns* with_st
 double PulledBar::YoungsModulus() const {
   Unknowns coupling;
   double axial = 0;
-  const Curvature free = CurvatureAt(Matrix3d::Zero(), &coupling, &axial);
+  const Curvature free = CurvatureAt(AtRest(), &coupling, &axial);
   return axial - coupling.dot(free.ldlt().solve(coupling));
 }
 
@@ -78,11 +80,25 @@ PulledBar::State PulledBar::AtRest() const {
 
 std::optional<PulledBar::State> PulledBar::Pull(double strain, const State& near) const {
   if (strain == 0) return AtRest();
+  std::optional<State> state = Rest(strain, near);
+  // Flow at a fixed deformation relaxes the bar too little, so it is repeated.
+  for (int flow = 0; flow < kMostFlows && state.has_value(); ++flow) {
+    const double before = state->plastic.strain;
+    if (!point_.Flow(state->g, state->plastic)) return state;
+    state = Rest(strain, *state);
+    if (state.has_value() && state->plastic.strain - before <= kLeastFlow * state->plastic.strain)
+      return state;
+  }
+  return std::nullopt;
+}
+
+std::optional<PulledBar::State> PulledBar::Rest(double strain, const State& near) const {
   const auto state_at = [&](const Matrix3d& in_frame) {
     State state;
     state.strain = strain;
     state.g = frame_ * in_frame * frame_.transpose();
-    state.response = point_.Respond(state.g);
+    state.plastic = near.plastic;
+    state.response = point_.Respond(state.g, state.plastic);
     return state;
   };
   const auto residual_of = [&](const State& state) {
@@ -104,7 +120,7 @@ std::optional<PulledBar::State> PulledBar::Pull(double strain, const State& near
   for (int step = 0; step < kMostSteps; ++step) {
     if (residual.norm() <= 1e-12 * std::abs(axial_of(state))) break;
     // Newton on the nearest definite curvature, so that each step leads downhill.
-    const Eigen::SelfAdjointEigenSolver<Curvature> modes(CurvatureAt(state.g, nullptr, nullptr));
+    const Eigen::SelfAdjointEigenSolver<Curvature> modes(CurvatureAt(state, nullptr, nullptr));
     const double stiffest = modes.eigenvalues().cwiseAbs().maxCoeff();
     const Unknowns stiffness = modes.eigenvalues().cwiseAbs().cwiseMax(1e-9 * stiffest);
     const Unknowns change =

@@ -12,7 +12,7 @@ namespace cleave {
 
 // A slender bar of a material, pulled along a direction, its sides free: it contracts, and with
 // fibres askew to it shears, until no stress acts on the sides. That state minimises the energy at
-// the given stretch.
+// the given stretch. A ductile one flows until it is at yield; it stays straight and does not neck.
 class PulledBar {
  public:
   // `direction` is of unit length. `point` must outlive this object.
@@ -21,6 +21,7 @@ class PulledBar {
   struct State {
     double strain = 0;                            // change of length over length
     Eigen::Matrix3d g = Eigen::Matrix3d::Zero();  // F - I
+    PlasticState plastic;
     PointResponse response;
     double nominal_stress = 0;  // Pa, force over the area at rest
     double volume_ratio = 1;    // det F
@@ -29,8 +30,8 @@ class PulledBar {
   // Pa, the slope of nominal stress over strain at rest.
   double YoungsModulus() const;
   State AtRest() const;
-  // The state at `strain` > -1, looked for from `near`, a state of this bar. nullopt where none is
-  // found: the material gives way.
+  // The state at `strain` > -1, looked for from `near`, a state of this bar on the way there.
+  // nullopt where none is found: the material gives way.
   std::optional<State> Pull(double strain, const State& near) const;
 
  private:
@@ -40,7 +41,9 @@ class PulledBar {
 
   // In the frame of the bar.
   Eigen::Matrix3d Turned(const Eigen::Matrix3d& matrix) const;
-  Curvature CurvatureAt(const Eigen::Matrix3d& g, Unknowns* with_strain, double* of_strain) const;
+  Curvature CurvatureAt(const State& state, Unknowns* with_strain, double* of_strain) const;
+  // With the flow of `near`.
+  std::optional<State> Rest(double strain, const State& near) const;
 
   const MaterialPoint& point_;
   Eigen::Matrix3d frame_;  // its first column is the direction

@@ -57,6 +57,7 @@ inline constexpr int64_t kMaxProbeGradients = 1'000;
 inline constexpr int64_t kMaxPullDirections = 16;
 inline constexpr int32_t kMaxProbeSamples = 1'000;
 inline constexpr double kMaxProbeStretch = 1'000;  // St. Venant-Kirchhoff grows with its 4th power
+inline constexpr double kMinProbeStrain = -0.95;  // bars pressed flat have no digits left
 inline constexpr double kMaxProbeStrain = 100;
 
 // Enough for any scene drawn by a person. Each selector costs a pass over the nodes.

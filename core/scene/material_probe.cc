@@ -63,7 +63,11 @@ Faults ValidateProbe(const MaterialProbe& probe) {
     for (size_t i = 0; i < probe.pull_directions.size(); ++i)
       check.Direction(At("pull_directions", i), probe.pull_directions[i]);
   }
-  check.Above("largest_strain", probe.largest_strain, 0, limits::kMaxProbeStrain);
+  if (probe.largest_strain.has_value()) {
+    check.Within("largest_strain", *probe.largest_strain, limits::kMinProbeStrain,
+                 limits::kMaxProbeStrain);
+    if (*probe.largest_strain == 0) faults.Error("largest_strain", "is 0: bars stay at rest");
+  }
   check.Count("samples", probe.samples, 1, limits::kMaxProbeSamples);
   return faults;
 }

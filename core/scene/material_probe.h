@@ -26,7 +26,9 @@ struct MaterialProbe {
   // Along which bars are pulled until they fail; any length but 0. If neither these nor gradients
   // are given: along the first family of fibres and across it, or x.
   std::vector<Vec3> pull_directions;
-  double largest_strain = 1;  // change of length over length, where a bar that holds is let go
+  // Change of length over length, where a bar that holds is let go; below 0 bars are pressed; absent:
+  // 10 for what can break, else 1.
+  std::optional<double> largest_strain;
   int32_t samples = 100;      // steps of equal strain a curve
 };
 

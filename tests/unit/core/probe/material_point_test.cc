@@ -111,5 +111,36 @@ TEST(MaterialPoint, StressAndTangentAreDerivativesForEveryLawWithTwoFamilies) {
   }
 }
 
+TEST(MaterialPoint, StressAfterFlowIsTheDerivativeOfEnergyAtThatFlow) {
+  Material material = MaterialOf(ElasticLaw::kStableNeoHookean);
+  material.plasticity = Plasticity{.yield_stress = 50, .hardening = 20};
+  material.fibres = {FamilyOf(300)};
+  const Vec3 direction{1, 2, 0};
+  const MaterialPoint point(material, {&direction, 1});
+  std::mt19937 random(5);
+  const Eigen::Matrix3d g = GradientOf(RandomGradient(random, {1.5, 1.0, 0.8}));
+  PlasticState plastic;
+  ASSERT_TRUE(point.Flow(g, plastic));
+  EXPECT_GT(plastic.strain, 0.1);
+  EXPECT_NEAR((Eigen::Matrix3d::Identity() + plastic.inverse_change).determinant(), 1, 1e-12);
+  PlasticState again = plastic;
+  point.Flow(g, again);
+  EXPECT_NEAR(again.strain, plastic.strain, 1e-9);  // it was at yield
+  Eigen::Matrix3d slope;
+  Matrix9d curvature;
+  constexpr double h = 1e-6;
+  for (int k = 0; k < 9; ++k) {
+    Eigen::Matrix3d up = g, down = g;
+    up(k / 3, k % 3) += h;
+    down(k / 3, k % 3) -= h;
+    const PointResponse above = point.Respond(up, plastic), below = point.Respond(down, plastic);
+    slope(k / 3, k % 3) = (above.energy - below.energy) / (2 * h);
+    const Eigen::Matrix3d change = (above.stress - below.stress) / (2 * h);
+    for (int row = 0; row < 9; ++row) curvature(row, k) = change(row / 3, row % 3);
+  }
+  EXPECT_LT((point.Respond(g, plastic).stress - slope).norm(), 1e-6 * slope.norm());
+  EXPECT_LT((point.Tangent(g, plastic) - curvature).norm(), 1e-6 * curvature.norm());
+}
+
 }  // namespace
 }  // namespace cleave

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace cleave {
 namespace {
@@ -70,6 +71,11 @@ TEST(Probe, LetsGoOfWhatDoesNotBreak) {
   }
 }
 
+TEST(Probe, PullsTenTimesFartherWhatCanBreak) {
+  EXPECT_EQ(RunProbe(ProbeOf(1e9)).curves[0].points.back().strain, 10);
+  EXPECT_EQ(RunProbe(ProbeOf(std::nullopt)).curves[0].points.back().strain, 1);
+}
+
 TEST(Probe, BreaksAtOnceWithoutStrength) {
   const StressStrainCurve curve = RunProbe(ProbeOf(0.0)).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kTensileStrength);
@@ -102,6 +108,74 @@ TEST(Probe, NamesTheStrengthOfFibresWhereItHolds) {
   EXPECT_NEAR(report.curves[0].points.back().nominal_stress, 3e4, 1e-6);
   EXPECT_EQ(report.curves[1].end, CurveEnd::kTensileStrength);
   EXPECT_NEAR(report.curves[1].points.back().nominal_stress, 1e4, 1e-6);
+}
+
+MaterialProbe DuctileProbe() {
+  MaterialProbe probe = ProbeOf(3e4);
+  probe.material.plasticity = Plasticity{.yield_stress = 1e4, .hardening = 5e4};
+  return probe;
+}
+
+TEST(Probe, LetsADuctileBarFlowUntilItHardensToItsStrength) {
+  const StressStrainCurve curve = RunProbe(DuctileProbe()).curves[0];
+  EXPECT_EQ(curve.end, CurveEnd::kTensileStrength);
+  const CurvePoint& end = curve.points.back();
+  // Edge stress is per area after flow, so nearly true stress; yield is in Kirchhoff stress. They
+  // differ by the elastic strain, 3 %.
+  EXPECT_NEAR(end.plastic_strain, (1.03 * 3e4 - 1e4) / 5e4, 0.003);
+  EXPECT_NEAR(end.true_stress, 3e4, 0.03 * 3e4);
+  EXPECT_LT(end.nominal_stress, 0.7 * end.true_stress);
+  EXPECT_NEAR(end.volume_ratio, 1, 0.02);  // flow keeps it
+  double work = 0;
+  for (size_t k = 1; k < curve.points.size(); ++k) {
+    const CurvePoint& point = curve.points[k];
+    const CurvePoint& before = curve.points[k - 1];
+    EXPECT_GE(point.plastic_strain, before.plastic_strain);
+    // On the yield surface, or below it.
+    const double kirchhoff = point.true_stress * point.volume_ratio;
+    EXPECT_LT(kirchhoff, (1e4 + 5e4 * point.plastic_strain) * (1 + 1e-6));
+    work += 0.5 * (point.nominal_stress + before.nominal_stress) * (point.strain - before.strain);
+  }
+  EXPECT_NEAR(end.energy, work, 0.005 * work);
+}
+
+TEST(Probe, EndsADuctileBarAtItsFailureStrain) {
+  MaterialProbe probe = DuctileProbe();
+  probe.material.plasticity->failure_strain = 0.1;
+  const StressStrainCurve curve = RunProbe(probe).curves[0];
+  EXPECT_EQ(curve.end, CurveEnd::kFailureStrain);
+  EXPECT_NEAR(curve.points.back().plastic_strain, 0.1, 1e-9);
+  EXPECT_NEAR(curve.points.back().failure_ratio, 1, 1e-9);
+}
+
+TEST(Probe, LetsAPerfectlyPlasticBarFlowOn) {
+  MaterialProbe probe = DuctileProbe();
+  probe.material.plasticity->hardening = 0;
+  probe.largest_strain = 1;
+  const StressStrainCurve curve = RunProbe(probe).curves[0];
+  EXPECT_EQ(curve.end, CurveEnd::kLargestStrain);
+  EXPECT_NEAR(curve.points.back().true_stress * curve.points.back().volume_ratio, 1e4, 1);
+}
+
+TEST(Probe, AnswersAGradientAfterFlow) {
+  MaterialProbe probe = DuctileProbe();
+  probe.deformation_gradients = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, {1, 1e-3, 0, 0, 1, 0, 0, 0, 1}};
+  const ProbeReport report = RunProbe(probe);
+  EXPECT_GT(report.points[0].plastic_strain, 0.01);
+  EXPECT_EQ(report.points[1].plastic_strain, 0);
+}
+
+TEST(Probe, PressesBarsUntilTheyAreCrushed) {
+  MaterialProbe probe = ProbeOf(1e3);
+  probe.material.compressive_strength = 5e4;
+  probe.largest_strain = -0.5;
+  const StressStrainCurve curve = RunProbe(probe).curves[0];
+  EXPECT_EQ(curve.end, CurveEnd::kCompressiveStrength);
+  EXPECT_NEAR(curve.points.back().nominal_stress, -5e4, 1e-6);
+  EXPECT_LT(curve.points.back().strain, -0.04);
+  probe.material.compressive_strength.reset();
+  probe.largest_strain = -0.2;
+  EXPECT_EQ(RunProbe(probe).curves[0].points.back().strain, -0.2);
 }
 
 TEST(Probe, TakesDirectionsThatDependOnThePlaceFromAPoint) {
