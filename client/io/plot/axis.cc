@@ -63,4 +63,10 @@ Axis MakeAxis(double low, double high, int wanted, bool prefixed, bool whole) {
   return axis;
 }
 
+std::string WithPrefix(double value, absl::string_view unit) {
+  // What three digits round up to a thousand has the next prefix.
+  const auto [factor, name] = PrefixFor(std::abs(value) * 1.0005);
+  return absl::StrFormat("%.3g %s%s", value / factor, name, unit);
+}
+
 }  // namespace cleave

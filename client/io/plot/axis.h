@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/string_view.h"
+
 namespace cleave {
 
 // A scale with round numbers on it, and the factor by which values are written.
@@ -19,6 +21,9 @@ struct Axis {
 // power of ten. Equal ends are moved apart. `prefixed` chooses an SI prefix so that labels stay
 // short; `whole` keeps steps at 1 or more, for counts. Precondition: finite, low <= high.
 Axis MakeAxis(double low, double high, int wanted, bool prefixed, bool whole);
+
+// "12.3 kN" for a value in a unit: three digits and an SI prefix.
+std::string WithPrefix(double value, absl::string_view unit);
 
 }  // namespace cleave
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -11,36 +11,8 @@
 namespace cleave {
 namespace {
 
-constexpr size_t kMostPoints = 2000;
-
 double Place(const Axis& axis, double value, double from, double to) {
   return from + (value - axis.low) / (axis.high - axis.low) * (to - from);
-}
-
-// Positions of the samples to draw: all, or of each interval the first and those where a value is
-// smallest and largest.
-std::vector<size_t> Thinned(std::span<const PlotSample> samples, const Drawing::Value& value) {
-  std::vector<size_t> kept;
-  if (samples.size() <= kMostPoints) {
-    for (size_t i = 0; i < samples.size(); ++i) kept.push_back(i);
-    return kept;
-  }
-  const size_t intervals = kMostPoints / 3;
-  for (size_t interval = 0; interval < intervals; ++interval) {
-    const size_t begin = interval * samples.size() / intervals;
-    const size_t end = (interval + 1) * samples.size() / intervals;
-    size_t least = begin;
-    size_t most = begin;
-    for (size_t i = begin; i < end; ++i) {
-      if (value(samples[i]) < value(samples[least])) least = i;
-      if (value(samples[i]) > value(samples[most])) most = i;
-    }
-    for (const size_t i : {begin, std::min(least, most), std::max(least, most)}) {
-      if (kept.empty() || kept.back() != i) kept.push_back(i);
-    }
-  }
-  if (kept.back() != samples.size() - 1) kept.push_back(samples.size() - 1);
-  return kept;
 }
 
 }  // namespace
@@ -69,15 +41,14 @@ std::string EscapedForXml(absl::string_view text) {
   return out;
 }
 
-Drawing::Drawing(std::span<const PlotSample> samples, const Axis& time)
-    : samples_(samples), time_(time) {
+Drawing::Drawing(const Axis& horizontal, double height) : horizontal_(horizontal) {
   absl::StrAppendFormat(
       &svg_,
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" width=\"%g\" "
       "height=\"%g\" font-family=\"'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', "
       "sans-serif\" font-size=\"14\" fill=\"#333\">\n"
       "<rect width=\"%g\" height=\"%g\" fill=\"#ffffff\"/>\n",
-      kPlotWidth, kPlotHeight, kPlotWidth, kPlotHeight, kPlotWidth, kPlotHeight);
+      kPlotWidth, height, kPlotWidth, height, kPlotWidth, height);
 }
 
 void Drawing::Text(double x, double y, absl::string_view anchor, absl::string_view attributes,
@@ -90,7 +61,7 @@ void Drawing::Line(double x1, double y1, double x2, double y2, absl::string_view
                         y1, x2, y2, style);
 }
 
-double Drawing::X(double time) const { return Place(time_, time, kPlotLeft, kPlotRight); }
+double Drawing::X(double value) const { return Place(horizontal_, value, kPlotLeft, kPlotRight); }
 double Drawing::Y(const Panel& panel, const Axis& axis, double value) {
   return Place(axis, value, panel.bottom, panel.top);
 }
@@ -100,7 +71,7 @@ void Drawing::Frame(const Panel& panel, const Axis& axis, absl::string_view titl
   absl::StrAppendFormat(&svg_,
                         "<rect x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" fill=\"#f7f8fa\"/>\n",
                         kPlotLeft, panel.top, kPlotRight - kPlotLeft, panel.bottom - panel.top);
-  for (const double tick : time_.ticks) {
+  for (const double tick : horizontal_.ticks) {
     Line(X(tick), panel.top, X(tick), panel.bottom, "stroke=\"#e1e4e9\"");
   }
   for (size_t i = 0; i < axis.ticks.size(); ++i) {
@@ -122,43 +93,43 @@ void Drawing::RightAxis(const Panel& panel, const Axis& axis, absl::string_view 
   SideTitle(kPlotWidth - 18, panel, title, color);
 }
 
-void Drawing::TimeAxis(const Panel& panel) {
-  for (size_t i = 0; i < time_.ticks.size(); ++i) {
-    Text(X(time_.ticks[i]), panel.bottom + 22, "middle", "", time_.labels[i]);
+void Drawing::HorizontalAxis(const Panel& panel, absl::string_view title) {
+  for (size_t i = 0; i < horizontal_.ticks.size(); ++i) {
+    Text(X(horizontal_.ticks[i]), panel.bottom + 22, "middle", "", horizontal_.labels[i]);
   }
-  Text((kPlotLeft + kPlotRight) / 2, panel.bottom + 46, "middle", "",
-       absl::StrCat("Time [", time_.prefix, "s]"));
+  Text((kPlotLeft + kPlotRight) / 2, panel.bottom + 46, "middle", "", title);
 }
 
-void Drawing::Curve(const Panel& panel, const Axis& axis, const Value& value,
-                    absl::string_view color, bool steps, bool filled) {
+void Drawing::Curve(const Panel& panel, const Axis& axis, std::span<const PlotPoint> points,
+                    absl::string_view color, CurveStyle style) {
+  if (points.empty()) return;
+  const bool steps = style == CurveStyle::kSteps || style == CurveStyle::kFilledSteps;
   std::string path;
   double last_y = 0;
-  double last_x = 0;
-  double first_x = 0;
-  for (const size_t i : Thinned(samples_, value)) {
-    const double x = X(samples_[i].time);
-    const double y = Y(panel, axis, value(samples_[i]));
+  for (const PlotPoint& point : points) {
+    const double x = X(point.x);
+    const double y = Y(panel, axis, point.y);
     if (path.empty()) {
       absl::StrAppendFormat(&path, "M%.2f %.2f", x, y);
-      first_x = x;
     } else {
       if (steps && y != last_y) absl::StrAppendFormat(&path, "L%.2f %.2f", x, last_y);
       absl::StrAppendFormat(&path, "L%.2f %.2f", x, y);
     }
-    last_x = x;
     last_y = y;
   }
-  if (filled) {
+  if (style == CurveStyle::kFilled || style == CurveStyle::kFilledSteps) {
     const double base = Y(panel, axis, std::max(axis.low, 0.0));
     absl::StrAppendFormat(
         &svg_, "<path d=\"%sL%.2f %.2fL%.2f %.2fZ\" fill=\"%s\" fill-opacity=\"0.13\"/>\n", path,
-        last_x, base, first_x, base, color);
+        X(points.back().x), base, X(points.front().x), base, color);
   }
   absl::StrAppendFormat(&svg_,
-                        "<path d=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"2.2\" "
+                        "<path d=\"%s\" fill=\"none\" stroke=\"%s\" %s"
                         "stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
-                        path, color);
+                        path, color,
+                        style == CurveStyle::kDashed
+                            ? "stroke-width=\"1.6\" stroke-dasharray=\"2 5\" "
+                            : "stroke-width=\"2.2\" ");
 }
 
 void Drawing::Dot(double x, double y, absl::string_view color) {
@@ -166,6 +137,16 @@ void Drawing::Dot(double x, double y, absl::string_view color) {
                         "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4.5\" fill=\"%s\" stroke=\"#ffffff\" "
                         "stroke-width=\"1.5\"/>\n",
                         x, y, color);
+}
+
+void Drawing::Cross(double x, double y, absl::string_view color) {
+  for (const auto& [stroke, width] :
+       {std::pair<absl::string_view, double>{"#ffffff", 5.5}, {color, 2.6}}) {
+    absl::StrAppendFormat(&svg_,
+                          "<path d=\"M%.1f %.1fL%.1f %.1fM%.1f %.1fL%.1f %.1f\" stroke=\"%s\" "
+                          "stroke-width=\"%g\" stroke-linecap=\"round\"/>\n",
+                          x - 5, y - 5, x + 5, y + 5, x - 5, y + 5, x + 5, y - 5, stroke, width);
+  }
 }
 
 std::string Drawing::Finish() const { return absl::StrCat(svg_, "</svg>\n"); }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -23,6 +25,43 @@ constexpr absl::string_view kPiecesColor = "#4d8050";
 constexpr Panel kUpper{64, 330};
 constexpr Panel kLower{372, 560};
 
+using Value = std::function<double(const PlotSample&)>;
+
+constexpr size_t kMostPoints = 2000;
+
+// Positions of the samples to draw: all, or of each interval the first and those where a value is
+// smallest and largest.
+std::vector<size_t> Thinned(std::span<const PlotSample> samples, const Value& value) {
+  std::vector<size_t> kept;
+  if (samples.size() <= kMostPoints) {
+    for (size_t i = 0; i < samples.size(); ++i) kept.push_back(i);
+    return kept;
+  }
+  const size_t intervals = kMostPoints / 3;
+  for (size_t interval = 0; interval < intervals; ++interval) {
+    const size_t begin = interval * samples.size() / intervals;
+    const size_t end = (interval + 1) * samples.size() / intervals;
+    size_t least = begin;
+    size_t most = begin;
+    for (size_t i = begin; i < end; ++i) {
+      if (value(samples[i]) < value(samples[least])) least = i;
+      if (value(samples[i]) > value(samples[most])) most = i;
+    }
+    for (const size_t i : {begin, std::min(least, most), std::max(least, most)}) {
+      if (kept.empty() || kept.back() != i) kept.push_back(i);
+    }
+  }
+  if (kept.back() != samples.size() - 1) kept.push_back(samples.size() - 1);
+  return kept;
+}
+
+std::vector<PlotPoint> PointsOf(std::span<const PlotSample> samples, const Value& value) {
+  std::vector<PlotPoint> points;
+  for (const size_t i : Thinned(samples, value))
+    points.push_back({samples[i].time, value(samples[i])});
+  return points;
+}
+
 absl::Status CheckSamples(std::span<const PlotSample> samples) {
   Faults faults;
   if (samples.empty()) faults.Error("samples", "there are none to plot");
@@ -41,21 +80,6 @@ absl::Status CheckSamples(std::span<const PlotSample> samples) {
   return faults.ToStatus();
 }
 
-// "12.3 N", with three digits and a prefix.
-std::string WithUnit(double value, absl::string_view unit) {
-  const Axis axis = MakeAxis(std::min(value, 0.0), std::max(value, 0.0), 4, true, false);
-  double scale = 1;
-  for (const auto& [name, factor] : {std::pair<absl::string_view, double>{"G", 1e9},
-                                     {"M", 1e6},
-                                     {"k", 1e3},
-                                     {"m", 1e-3},
-                                     {"µ", 1e-6},
-                                     {"n", 1e-9}}) {
-    if (axis.prefix == name) scale = factor;
-  }
-  return absl::StrFormat("%.3g %s%s", value / scale, axis.prefix, unit);
-}
-
 // Marks the largest force and, through both panels, the first break.
 void AddMarks(std::span<const PlotSample> samples, const Axis& force, Drawing& drawing) {
   const auto broken = std::find_if(samples.begin(), samples.end(),
@@ -66,7 +90,7 @@ void AddMarks(std::span<const PlotSample> samples, const Axis& force, Drawing& d
     const bool room = x < kPlotRight - 190;
     drawing.Text(room ? x + 7 : x - 7, (kUpper.bottom + kLower.top) / 2 + 5, room ? "start" : "end",
                  " font-size=\"13\" fill=\"#555b63\"",
-                 absl::StrCat("first break, ", WithUnit(broken->time, "s")));
+                 absl::StrCat("first break, ", WithPrefix(broken->time, "s")));
   }
   const auto peak = std::max_element(samples.begin(), samples.end(),
                                      [](const PlotSample& a, const PlotSample& b) {
@@ -79,7 +103,7 @@ void AddMarks(std::span<const PlotSample> samples, const Axis& force, Drawing& d
   const bool room = x < kPlotRight - 190;
   drawing.Text(room ? x + 10 : x - 10, peak->force > 0 ? y - 6 : y + 18, room ? "start" : "end",
                " font-size=\"13\" font-weight=\"600\"",
-               absl::StrCat("peak ", WithUnit(peak->force, "N")));
+               absl::StrCat("peak ", WithPrefix(peak->force, "N")));
 }
 
 }  // namespace
@@ -103,7 +127,7 @@ absl::StatusOr<std::string> EncodePlot(std::span<const PlotSample> samples,
   const Axis edges = MakeAxis(0, broken, 4, false, true);
   const bool with_pieces = options.pieces && pieces > 0;
 
-  Drawing drawing(samples, time);
+  Drawing drawing(time);
   if (!options.title.empty()) {
     drawing.Text(kPlotLeft, 38, "start", " font-size=\"19\" font-weight=\"600\" fill=\"#222\"",
                  EscapedForXml(options.title));
@@ -112,18 +136,20 @@ absl::StatusOr<std::string> EncodePlot(std::span<const PlotSample> samples,
                 absl::StrCat(EscapedForXml(options.force_label), " [", force.prefix, "N]"),
                 kForceColor);
   drawing.Frame(kLower, edges, "Broken edges", kBrokenColor);
-  drawing.TimeAxis(kLower);
+  drawing.HorizontalAxis(kLower, absl::StrCat("Time [", time.prefix, "s]"));
+  drawing.Curve(kUpper, force, PointsOf(samples, [](const PlotSample& s) { return s.force; }),
+                kForceColor, CurveStyle::kFilled);
   drawing.Curve(
-      kUpper, force, [](const PlotSample& s) { return s.force; }, kForceColor, false, true);
-  drawing.Curve(
-      kLower, edges, [](const PlotSample& s) { return static_cast<double>(s.broken_edges); },
-      kBrokenColor, true, true);
+      kLower, edges,
+      PointsOf(samples, [](const PlotSample& s) { return static_cast<double>(s.broken_edges); }),
+      kBrokenColor, CurveStyle::kFilledSteps);
   if (with_pieces) {
     const Axis count = MakeAxis(0, static_cast<double>(pieces), 4, false, true);
     drawing.RightAxis(kLower, count, "Pieces", kPiecesColor);
     drawing.Curve(
-        kLower, count, [](const PlotSample& s) { return static_cast<double>(s.pieces); },
-        kPiecesColor, true, false);
+        kLower, count,
+        PointsOf(samples, [](const PlotSample& s) { return static_cast<double>(s.pieces); }),
+        kPiecesColor, CurveStyle::kSteps);
   }
   AddMarks(samples, force, drawing);
   return drawing.Finish();
