@@ -36,7 +36,8 @@ ARROWS = {
                         "core/material", "core/scene", "core/mesh", "Eigen", "tbb"],
     "core/surface": ["core/surface", "core/damage", "core/mesh", "Eigen"],
     "core/stream": ["core/stream", "core/mesh", "zstd.h", "immintrin.h"],
-    "proto/convert": ["proto/convert", "cleave", "google", "core/scene", "core/mesh", "core/stream"],
+    "proto/convert": ["proto/convert", "cleave", "google", "core/scene", "core/mesh", "core/stream",
+                      "core/probe/probe.h"],
     "server/files": ["server/files", POSIX],
     "server/control": ["server/control", "server/files", "google", POSIX],
     "server/session": ["server/session", "server/files", "proto/convert", "cleave", "google", "core/scene",
@@ -58,7 +59,8 @@ ARROWS = {
                   "core/surface", "core/damage", "core/stream", "Eigen", "zlib.h", "zstd.h", "png.h",
                   "webp", "embree3", "pugixml.hpp", "tbb", POSIX],
     "client/cli": ["client/cli", "client/cpp", "client/io", "proto/convert", "cleave", "google",
-                   "core/scene", "core/mesh", "core/surface", "core/stream", "CLI", POSIX],
+                   "core/scene", "core/mesh", "core/surface", "core/stream", "core/probe", "CLI",
+                   POSIX],
 }
 EVERYWHERE = ["core/base", "absl"]
 

@@ -58,6 +58,7 @@ Client::Client(std::string address, std::shared_ptr<grpc::Channel> channel, cons
       stop_(stop),
       assets_(v1::AssetService::NewStub(channel_)),
       frames_(v1::FrameService::NewStub(channel_)),
+      materials_(v1::MaterialService::NewStub(channel_)),
       servers_(v1::ServerService::NewStub(channel_)),
       sessions_(v1::SessionService::NewStub(channel_)) {}
 
@@ -200,6 +201,25 @@ absl::StatusOr<v1::ListFramesResponse> Client::ListFrames(const std::string& nam
                                        [&](grpc::ClientContext& context) {
                                          return frames_->ListFrames(&context, request, &response);
                                        }));
+  return response;
+}
+
+absl::StatusOr<v1::ProbeMaterialResponse> Client::ProbeMaterial(
+    const v1::ProbeMaterialRequest& request) {
+  v1::ProbeMaterialResponse response;
+  CLEAVE_RETURN_IF_ERROR(
+      CallWithRetry(policy_, "probing the material", stop_, [&](grpc::ClientContext& context) {
+        return materials_->ProbeMaterial(&context, request, &response);
+      }));
+  return response;
+}
+
+absl::StatusOr<v1::ListMaterialPresetsResponse> Client::ListMaterialPresets() {
+  v1::ListMaterialPresetsResponse response;
+  CLEAVE_RETURN_IF_ERROR(
+      CallWithRetry(policy_, "listing presets", stop_, [&](grpc::ClientContext& context) {
+        return materials_->ListMaterialPresets(&context, {}, &response);
+      }));
   return response;
 }
 

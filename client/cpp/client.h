@@ -14,13 +14,14 @@
 #include "absl/strings/string_view.h"
 #include "cleave/v1/asset.grpc.pb.h"
 #include "cleave/v1/frame.grpc.pb.h"
+#include "cleave/v1/material.grpc.pb.h"
 #include "cleave/v1/server.grpc.pb.h"
 #include "cleave/v1/session.grpc.pb.h"
 #include "client/cpp/retry.h"
 
 namespace cleave {
 
-// A connection to a server and the calls on sessions. Calls are repeated where that is safe
+// A connection to a server and its calls. Calls are repeated where that is safe
 // (RetryPolicy); errors are those of StatusFromRpc. Thread-safe.
 class Client {
  public:
@@ -48,6 +49,9 @@ class Client {
   absl::StatusOr<v1::Session> PauseSession(const std::string& name, bool abort_step);
   absl::StatusOr<v1::ListFramesResponse> ListFrames(const std::string& name, int64_t first_frame);
 
+  absl::StatusOr<v1::ProbeMaterialResponse> ProbeMaterial(const v1::ProbeMaterialRequest& request);
+  absl::StatusOr<v1::ListMaterialPresetsResponse> ListMaterialPresets();
+
   // For the calls that stream: mesh_transfer.h, frame_stream.h.
   v1::AssetService::Stub& assets() { return *assets_; }
   v1::FrameService::Stub& frames() { return *frames_; }
@@ -65,6 +69,7 @@ class Client {
   v1::ServerInfo server_;
   std::unique_ptr<v1::AssetService::Stub> assets_;
   std::unique_ptr<v1::FrameService::Stub> frames_;
+  std::unique_ptr<v1::MaterialService::Stub> materials_;
   std::unique_ptr<v1::ServerService::Stub> servers_;
   std::unique_ptr<v1::SessionService::Stub> sessions_;
 };

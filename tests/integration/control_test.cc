@@ -13,6 +13,7 @@
 #include "client/cpp/client.h"
 #include "client/cpp/frame_stream.h"
 #include "client/cpp/rpc_error.h"
+#include "proto/convert/probe.h"
 #include "tests/integration/test_server.h"
 
 namespace cleave {
@@ -208,6 +209,35 @@ TEST_F(ControlTest, EveryFaultOfARequestIsNamedByItsFieldAtOnce) {
               IsSupersetOf({"session_id", "threads", "materials[0].poisson_ratio",
                             "materials[0].density", "motions[0].node_set", "timing.frame_count"}));
   EXPECT_TRUE(client_->ListSessions()->empty());
+}
+
+TEST_F(ControlTest, AProbedMaterialAnswersTheNumbersOfTheLibrary) {
+  v1::ProbeMaterialRequest request;
+  request.mutable_material()->set_preset("dry_wood");
+  for (const double x : {1, 1, 0, 0, 0, 1}) request.add_pull_directions(x);
+  for (const double x : {1.0, 0.01, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0})
+    request.add_deformation_gradients(x);
+  const absl::StatusOr<v1::ProbeMaterialResponse> response = client_->ProbeMaterial(request);
+  ASSERT_TRUE(response.ok()) << response.status();
+  Faults faults;
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(*response,
+                                                                 AnswerProbe(request, faults)));
+  EXPECT_EQ(client_->ListMaterialPresets()->presets_size(), PresetsMessage().presets_size());
+}
+
+TEST_F(ControlTest, EveryFaultOfAProbeIsNamedAtOnce) {
+  v1::ProbeMaterialRequest request;
+  request.mutable_material()->set_preset("oak");
+  request.mutable_material()->set_poisson_ratio(0.6);
+  request.add_pull_directions(1);
+  for (int k = 0; k < 9 * 1001; ++k) request.add_deformation_gradients(0);
+  request.set_samples(100'000);
+  const absl::Status status = client_->ProbeMaterial(request).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  EXPECT_EQ(ReasonOf(status), "PARAM_OUT_OF_RANGE");
+  EXPECT_THAT(FieldsOf(status),
+              IsSupersetOf({"material.preset", "material.poisson_ratio", "pull_directions",
+                            "deformation_gradients", "samples"}));
 }
 
 TEST_F(ControlTest, AHundredFaultsFitIntoAnAnswer) {

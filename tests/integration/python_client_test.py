@@ -83,6 +83,40 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(session.state().head_frame, 2)
         self.assertEqual(session.state().state, session_pb2.SESSION_STATE_IDLE)
 
+    def test_probed_material_answers_in_arrays(self):
+        self.assertIn("Wood Handbook", self.client.presets()["dry_wood"].sources[0])
+        gradient = np.eye(3)
+        gradient[0, 1] = 1e-4
+        probe = self.client.probe("glass", [gradient, np.eye(3)], [[0, 0, 2]], samples=10)
+        shear_modulus = 70e9 / 2.46
+        np.testing.assert_allclose(probe.energy, [shear_modulus * 1e-8 / 2, 0], rtol=1e-6)
+        self.assertAlmostEqual(probe.stress[0, 1, 0] / (shear_modulus * 1e-4), 1, places=6)
+        self.assertAlmostEqual(probe.tangent[1, 0, 1, 1, 0] / shear_modulus, 1, places=9)
+        (curve,) = probe.curves
+        self.assertEqual(curve.end, "TENSILE_STRENGTH")
+        np.testing.assert_allclose(curve.nominal_stress[-1], 45e6, rtol=1e-9)
+        np.testing.assert_allclose(curve.strain, np.linspace(0, curve.strain[-1], 11))
+        along, across = self.client.probe("dry_wood").curves
+        self.assertGreater(along.youngs_modulus, 10 * across.youngs_modulus)
+        with self.assertRaises(CleaveError) as caught:
+            self.client.probe(scene_pb2.Material(youngs_modulus=-1), samples=0)
+        self.assertEqual([field for field, _ in caught.exception.faults],
+                         ["material.youngs_modulus", "material.density", "samples"])
+
+    def test_session_keeps_the_numbers_of_a_preset(self):
+        scene = first_steps.bar()
+        scene.materials[0].Clear()
+        scene.materials[0].preset = "cheese"
+        session = self.client.create_session("cheese", scene)
+        self.addCleanup(session.delete)
+        material = session.state().scene.materials[0]
+        self.assertEqual((material.name, material.preset), ("cheese", ""))
+        self.assertEqual(material.youngs_modulus, 113e3)
+        scene.materials[0].preset = "chese"
+        with self.assertRaises(CleaveError) as caught:
+            self.client.create_session("chese", scene)
+        self.assertEqual(caught.exception.faults[0][0], "scene.materials[0].preset")
+
     def test_every_fault_of_a_scene_is_named_by_field(self):
         scene = first_steps.bar()
         scene.materials[0].poisson_ratio = 0.7

@@ -29,6 +29,8 @@ try:
         asset_pb2_grpc,
         frame_pb2,
         frame_pb2_grpc,
+        material_pb2,
+        material_pb2_grpc,
         scene_pb2,
         server_pb2,
         server_pb2_grpc,
@@ -83,6 +85,35 @@ class Frame:
 
 
 @dataclasses.dataclass(frozen=True)
+class Curve:
+    """What a slender bar along a direction does when it is pulled slowly. Arrays are columns."""
+
+    direction: np.ndarray  # unit
+    youngs_modulus: float  # Pa, slope at rest
+    end: str  # "LARGEST_STRAIN", "TENSILE_STRENGTH", ...: CurveEnd of material.proto
+    worst_edge: np.ndarray  # unit, rest direction of the edge that failed or came nearest
+    strain: np.ndarray  # change of length over length
+    nominal_stress: np.ndarray  # Pa, force over the area at rest
+    true_stress: np.ndarray  # Pa, force over the area now
+    volume_ratio: np.ndarray
+    energy: np.ndarray  # J/m^3
+    failure_ratio: np.ndarray  # the worst edge fails at 1
+    plastic_strain: np.ndarray  # equivalent
+
+
+@dataclasses.dataclass(frozen=True)
+class Probe:
+    """What a material answers."""
+
+    material: object  # Material message, presets as numbers
+    energy: np.ndarray  # gradients, J/m^3, elastic
+    plastic_strain: np.ndarray  # gradients, equivalent
+    stress: np.ndarray  # gradients x 3 x 3, Pa, first Piola-Kirchhoff
+    tangent: np.ndarray  # gradients x 3 x 3 x 3 x 3, Pa: [n, i, j, k, l] is dP_ij / dF_kl
+    curves: list  # of Curve
+
+
+@dataclasses.dataclass(frozen=True)
 class Mesh:
     """A tetrahedral mesh; node and tet ids are rows."""
 
@@ -118,6 +149,7 @@ class Client:
         )
         self._assets = asset_pb2_grpc.AssetServiceStub(self._channel)
         self._frames = frame_pb2_grpc.FrameServiceStub(self._channel)
+        self._materials = material_pb2_grpc.MaterialServiceStub(self._channel)
         self._servers = server_pb2_grpc.ServerServiceStub(self._channel)
         self._sessions = session_pb2_grpc.SessionServiceStub(self._channel)
         self.server = self._call(
@@ -200,6 +232,65 @@ class Client:
             request.page_token = page.next_page_token
             if not request.page_token:
                 return found
+
+    def presets(self):
+        """The material presets of the server, as messages by name."""
+        answer = self._call(
+            self._materials.ListMaterialPresets, material_pb2.ListMaterialPresetsRequest()
+        )
+        return {preset.name: preset for preset in answer.presets}
+
+    def probe(
+        self,
+        material,
+        deformation_gradients=(),
+        pull_directions=(),
+        fibre_directions=(),
+        point=None,
+        stress=scene_pb2.FRACTURE_STRESS_UNSPECIFIED,
+        largest_strain=None,
+        samples=100,
+    ):
+        """Evaluates a material without a mesh: the name of a preset, or a Material message.
+
+        Gradients are n x 3 x 3, directions n x 3. Without gradients and directions bars are pulled
+        along the fibres and across them, or along x. Returns a Probe.
+        """
+        if isinstance(material, str):
+            material = scene_pb2.Material(preset=material)
+        answer = self._call(
+            self._materials.ProbeMaterial,
+            material_pb2.ProbeMaterialRequest(
+                material=material,
+                stress=stress,
+                point=[] if point is None else point,
+                fibre_directions=np.ravel(fibre_directions),
+                deformation_gradients=np.ravel(deformation_gradients),
+                pull_directions=np.ravel(pull_directions),
+                largest_strain=largest_strain,
+                samples=samples,
+            ),
+        )
+        curves = [
+            Curve(
+                end=material_pb2.CurveEnd.Name(curve.end).removeprefix("CURVE_END_"),
+                youngs_modulus=curve.youngs_modulus,
+                **{
+                    field.name: np.array(getattr(curve, field.name))
+                    for field in dataclasses.fields(Curve)
+                    if field.name not in ("end", "youngs_modulus")
+                },
+            )
+            for curve in answer.curves
+        ]
+        return Probe(
+            answer.material,
+            np.array([point.energy for point in answer.points]),
+            np.array([point.plastic_strain for point in answer.points]),
+            np.array([point.stress for point in answer.points]).reshape(-1, 3, 3),
+            np.array([point.tangent for point in answer.points]).reshape(-1, 3, 3, 3, 3),
+            curves,
+        )
 
     def download_mesh(self, asset, unit_scale=1.0):
         """The Mesh of an asset name; positions times unit_scale."""

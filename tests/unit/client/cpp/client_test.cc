@@ -68,6 +68,27 @@ TEST(Client, AllPagesAreListed) {
   EXPECT_EQ((*sessions)[2].name(), "sessions/after-2");
 }
 
+class ForgetfulMaterials : public v1::MaterialService::Service {
+ public:
+  grpc::Status ProbeMaterial(grpc::ServerContext*, const v1::ProbeMaterialRequest* request,
+                             v1::ProbeMaterialResponse* response) override {
+    response->mutable_material()->set_name(request->material().preset());
+    return ForgetfulSessions::Lose(calls);
+  }
+  int calls = 0;
+};
+
+TEST(Client, ProbeWhoseAnswerWasLostIsAskedForAgain) {
+  ForgetfulMaterials service;
+  FakeServer server(service);
+  v1::ProbeMaterialRequest request;
+  request.mutable_material()->set_preset("glass");
+  const auto response = server.client().ProbeMaterial(request);
+  ASSERT_TRUE(response.ok()) << response.status();
+  EXPECT_EQ(response->material().name(), "glass");
+  EXPECT_EQ(service.calls, 2);
+}
+
 TEST(Client, NobodyAtTheAddressIsUnavailableAndNamesIt) {
   const auto client =
       Client::Connect("unix:/nonexistent/socket", std::chrono::milliseconds(300), nullptr);
