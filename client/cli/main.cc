@@ -48,6 +48,7 @@ int Main(int argc, char** argv) {
   AddCancel(app, program);
   AddValidate(app, program);
   AddPlan(app, program);
+  AddProbe(app, program);
   AddInspect(app, program);
   AddExport(app, program);
   AddPreview(app, program);

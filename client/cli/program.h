@@ -24,6 +24,7 @@ void AddList(CLI::App& app, Program& program);
 void AddCancel(CLI::App& app, Program& program);
 void AddValidate(CLI::App& app, Program& program);
 void AddPlan(CLI::App& app, Program& program);
+void AddProbe(CLI::App& app, Program& program);
 void AddInspect(CLI::App& app, Program& program);
 void AddInfo(CLI::App& app, Program& program);
 void AddExport(CLI::App& app, Program& program);

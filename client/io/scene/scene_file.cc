@@ -46,9 +46,31 @@ absl::StatusOr<std::string> ReadBounded(const std::string& path) {
   return text;
 }
 
+// Fills `message` and `file` from the text.
+absl::Status ParseInto(absl::string_view text, SceneFormat format, const std::string& path,
+                       google::protobuf::Message& message, FileLines& file) {
+  if (text.size() > kMaxSceneFileBytes)
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": is larger than ", kMaxSceneFileBytes >> 20,
+        " MiB; a scene names its mesh (mesh.file), and node sets by box, sphere, plane or region"));
+  if (const int line = LineOfInvalidUtf8(text); line > 0)
+    return absl::InvalidArgumentError(absl::StrCat(path, ":", line, ": is not UTF-8 text"));
+  file.path = path;
+  std::vector<SceneFault> faults = format == SceneFormat::kJson
+                                       ? ParseJsonMessage(text, message, file.lines)
+                                       : ParseTextMessage(text, message, file.lines);
+  if (faults.empty()) return absl::OkStatus();
+  std::stable_sort(faults.begin(), faults.end(),
+                   [](const SceneFault& a, const SceneFault& b) { return a.line < b.line; });
+  return absl::InvalidArgumentError(
+      absl::StrJoin(faults, "\n", [&path](std::string* out, const SceneFault& fault) {
+        absl::StrAppend(out, path, ":", fault.line, ": ", fault.text);
+      }));
+}
+
 }  // namespace
 
-int SceneFile::LineOf(absl::string_view field) const {
+int FileLines::LineOf(absl::string_view field) const {
   std::string prefix(field);
   while (true) {
     if (const auto found = lines.find(prefix); found != lines.end()) return found->second;
@@ -58,7 +80,7 @@ int SceneFile::LineOf(absl::string_view field) const {
   }
 }
 
-std::string SceneFile::Describe(const std::vector<Fault>& faults) const {
+std::string FileLines::Describe(const std::vector<Fault>& faults) const {
   return absl::StrJoin(faults, "\n", [this](std::string* out, const Fault& fault) {
     const int line = LineOf(fault.field);
     absl::StrAppend(out, path, ":", line > 0 ? absl::StrCat(line, ": ") : " ", fault.field, ": ",
@@ -68,30 +90,23 @@ std::string SceneFile::Describe(const std::vector<Fault>& faults) const {
 
 absl::StatusOr<SceneFile> ParseScene(absl::string_view text, SceneFormat format,
                                      const std::string& path) {
-  if (text.size() > kMaxSceneFileBytes)
-    return absl::InvalidArgumentError(absl::StrCat(
-        path, ": is larger than ", kMaxSceneFileBytes >> 20,
-        " MiB; a scene names its mesh (mesh.file), and node sets by box, sphere, plane or region"));
-  if (const int line = LineOfInvalidUtf8(text); line > 0)
-    return absl::InvalidArgumentError(absl::StrCat(path, ":", line, ": is not UTF-8 text"));
   SceneFile file;
-  file.path = path;
-  std::vector<SceneFault> faults = format == SceneFormat::kJson
-                                       ? ParseJsonMessage(text, file.scene, file.lines)
-                                       : ParseTextMessage(text, file.scene, file.lines);
-  if (faults.empty()) return file;
-  std::stable_sort(faults.begin(), faults.end(),
-                   [](const SceneFault& a, const SceneFault& b) { return a.line < b.line; });
-  return absl::InvalidArgumentError(
-      absl::StrJoin(faults, "\n", [&path](std::string* out, const SceneFault& fault) {
-        absl::StrAppend(out, path, ":", fault.line, ": ", fault.text);
-      }));
+  CLEAVE_RETURN_IF_ERROR(ParseInto(text, format, path, file.scene, file));
+  return file;
 }
 
 absl::StatusOr<SceneFile> ReadSceneFile(const std::string& path) {
   CLEAVE_ASSIGN_OR_RETURN(const SceneFormat format, FormatOf(path));
   CLEAVE_ASSIGN_OR_RETURN(const std::string text, ReadBounded(path));
   return ParseScene(text, format, path);
+}
+
+absl::StatusOr<MaterialFile> ReadMaterialFile(const std::string& path) {
+  CLEAVE_ASSIGN_OR_RETURN(const SceneFormat format, FormatOf(path));
+  CLEAVE_ASSIGN_OR_RETURN(const std::string text, ReadBounded(path));
+  MaterialFile file;
+  CLEAVE_RETURN_IF_ERROR(ParseInto(text, format, path, file.material, file));
+  return file;
 }
 
 std::string MeshPath(const SceneFile& file) {

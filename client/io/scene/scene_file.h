@@ -12,16 +12,24 @@
 
 namespace cleave {
 
-// A scene as a person wrote it, and where in the file everything stands.
-struct SceneFile {
-  std::string path;  // as given; names the file in messages
-  cleave::v1::Scene scene;
+// Where in a file that a person wrote everything stands.
+struct FileLines {
+  std::string path;                  // as given; names the file in messages
   std::map<std::string, int> lines;  // line, from 1, by field path: materials[2].poisson_ratio
 
   // The line of a field, or of the nearest enclosing one that the file holds; 0 if there is none.
   int LineOf(absl::string_view field) const;
-  // "path:line: field: description", one a line: how a fault of this scene is shown.
+  // "path:line: field: description", one a line: how a fault of the file is shown.
   std::string Describe(const std::vector<Fault>& faults) const;
+};
+
+struct SceneFile : FileLines {
+  cleave::v1::Scene scene;
+};
+
+// One material, as in a scene's list of materials.
+struct MaterialFile : FileLines {
+  cleave::v1::Material material;
 };
 
 enum class SceneFormat {
@@ -41,6 +49,9 @@ absl::StatusOr<SceneFile> ReadSceneFile(const std::string& path);
 // The same for text in memory; `path` is for messages only.
 absl::StatusOr<SceneFile> ParseScene(absl::string_view text, SceneFormat format,
                                      const std::string& path);
+
+// Reads a material file, under the same rules.
+absl::StatusOr<MaterialFile> ReadMaterialFile(const std::string& path);
 
 // Where the scene's mesh.file lies: relative paths count from the scene file's folder. Empty when
 // the scene names no file.
