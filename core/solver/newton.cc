@@ -16,6 +16,9 @@ namespace {
 constexpr double kArmijo = 1e-4;
 // A full Newton step that leaves more of the residual than this has met the projection's limits.
 constexpr double kSlow = 0.1;
+// Within this many tolerances of the solution, after a full step that was not slow, the last matrix
+// does for one more: assembly costs as much as the iterations that it could save.
+constexpr double kNear = 30;
 // Linear solves aim this far below what the whole step has to reach.
 constexpr double kLinearMargin = 0.1;
 constexpr int kMaxBacktracks = 40;
@@ -37,7 +40,7 @@ NewtonSolver::NewtonSolver(const Model& model)
       gravity_(model.gravity ? ToDouble4(*model.gravity) : Splat(0)),
       blocks_(model.unknown_count()),
       matrix_(model.incidence->edges, model.unknown_count()),
-      pcg_(model.unknown_count(), fixed_nodes_, model.quality.precision),
+      pcg_(model.unknown_count(), model.node_count(), fixed_nodes_, model.quality.precision),
       element_rounding_(model.quality.precision == Precision::kFloat ? kFloatOverDouble : 1),
       inertia_(model.masses.size()),
       gradient_(model.masses.size()),
@@ -157,31 +160,31 @@ absl::Status NewtonSolver::NotConverged(double relative_residual) const {
                                          relative_residual, ", largest at ", where));
 }
 
-absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const NodalVector& displacements,
-                                                       Curvature curvature, const StopFlag& stop,
-                                                       StepReport& report) {
-  {
-    ScopedTimer timer(report.assembly_seconds);
-    EdgeBlocks& blocks = matrix_.Clear();
-    for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
-    for (const auto& term : model_.node_terms)
-      term->AddStiffness(displacements, matrix_.couplings());
-    matrix_.Finish(inertia_);
-    pcg_.Prepare(matrix_);
-    const Double4 gross = blocks_.Sum(
-        [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
-    // Displacements are double in any case, and so are their differences; elements see the latter.
-    // Strain has rounding of the size of element rotations, energy that times stress.
-    const double in_strain = element_rounding_ * kTermRounding;
-    rounding_energy_ = kTermRounding * gross[0] +
-                       in_strain * std::sqrt(gross[0] * std::abs(elastic_energy_)) +
-                       in_strain * in_strain * gross[0];
-    rounding_force_ =
-        rounding_inertia_ +
-        kTermRounding * std::max(std::sqrt(gross[1]), element_rounding_ * std::sqrt(gross[2]));
-    for (const auto& term : model_.node_terms)
-      rounding_force_ += term->RoundingForce(displacements);
-  }
+void NewtonSolver::Assemble(const NodalVector& displacements, Curvature curvature,
+                            StepReport& report) {
+  ScopedTimer timer(report.assembly_seconds);
+  EdgeBlocks& blocks = matrix_.Clear();
+  for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
+  for (const auto& term : model_.node_terms) term->AddStiffness(displacements, matrix_.couplings());
+  matrix_.Finish(inertia_);
+  for (size_t node = 0; node < model_.mesh->rest_positions.size(); ++node)
+    trial_[node] = ToDouble4(model_.mesh->rest_positions[node]) + displacements[node];
+  pcg_.Prepare(matrix_, trial_);
+  const Double4 gross = blocks_.Sum(
+      [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
+  // Displacements are double in any case, and so are their differences; elements see the latter.
+  // Strain has rounding of the size of element rotations, energy that times stress.
+  const double in_strain = element_rounding_ * kTermRounding;
+  rounding_energy_ = kTermRounding * gross[0] +
+                     in_strain * std::sqrt(gross[0] * std::abs(elastic_energy_)) +
+                     in_strain * in_strain * gross[0];
+  rounding_force_ =
+      rounding_inertia_ +
+      kTermRounding * std::max(std::sqrt(gross[1]), element_rounding_ * std::sqrt(gross[2]));
+  for (const auto& term : model_.node_terms) rounding_force_ += term->RoundingForce(displacements);
+}
+
+absl::StatusOr<bool> NewtonSolver::FindSearchDirection(const StopFlag& stop, StepReport& report) {
   ScopedTimer timer(report.linear_solve_seconds);
   const Quality& quality = model_.quality;
   const double needed = kLinearMargin * quality.residual_tolerance * force_scale_ / residual_norm_;
@@ -224,6 +227,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
   double last_norm = kInfinity;
   double last_share = 0;
   bool exact_works = true;
+  bool branched = false;
   for (int32_t iteration = 0;; ++iteration) {
     const double relative = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
     const bool converged = residual_norm_ <= rounding_force_ ||
@@ -239,15 +243,19 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     ++report.newton_iterations;
 
     const bool slow = last_share == 1 && residual_norm_ > kSlow * last_norm;
+    const bool near =
+        last_share == 1 && !slow && !branched && relative <= kNear * quality.residual_tolerance;
     bool downhill = false;
-    if (slow && exact_works) {
-      CLEAVE_ASSIGN_OR_RETURN(downhill,
-                              FindSearchDirection(displacements, Curvature::kExact, stop, report));
+    if (near) {
+      CLEAVE_ASSIGN_OR_RETURN(downhill, FindSearchDirection(stop, report));
+    } else if (slow && exact_works) {
+      Assemble(displacements, Curvature::kExact, report);
+      CLEAVE_ASSIGN_OR_RETURN(downhill, FindSearchDirection(stop, report));
       exact_works = downhill;
     }
     if (!downhill) {
-      CLEAVE_RETURN_IF_ERROR(
-          FindSearchDirection(displacements, Curvature::kSemidefinite, stop, report).status());
+      Assemble(displacements, Curvature::kSemidefinite, report);
+      CLEAVE_RETURN_IF_ERROR(FindSearchDirection(stop, report).status());
     }
 
     // Line search. Evaluate replaces the residual, so what the decrease is measured against is
@@ -284,7 +292,8 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       last_norm = norm;
       displacements.swap(trial_);
       // Energies of two branches are not compared: the next iteration starts from the new one.
-      if (ChooseBranches(displacements)) Evaluate(start, dt, displacements);
+      branched = ChooseBranches(displacements);
+      if (branched) Evaluate(start, dt, displacements);
       continue;
     }
     Evaluate(start, dt, displacements);

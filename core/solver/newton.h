@@ -63,9 +63,10 @@ class NewtonSolver {
   void Evaluate(const State& start, double dt, const NodalVector& displacements);
   // Adds the node terms to what Evaluate set.
   void EvaluateNodeTerms(const NodalVector& displacements);
-  // Sets `search_` by a linear solve at `displacements`; returns whether it leads downhill.
-  absl::StatusOr<bool> FindSearchDirection(const NodalVector& displacements, Curvature curvature,
-                                           const StopFlag& stop, StepReport& report);
+  // Sets the matrix, its preconditioner and what rounding may hide, at `displacements`.
+  void Assemble(const NodalVector& displacements, Curvature curvature, StepReport& report);
+  // Sets `search_` by a linear solve; returns whether it leads downhill.
+  absl::StatusOr<bool> FindSearchDirection(const StopFlag& stop, StepReport& report);
   // Of all terms; true where any changed.
   bool ChooseBranches(const NodalVector& displacements);
   absl::Status NotConverged(double relative_residual) const;

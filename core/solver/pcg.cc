@@ -47,6 +47,10 @@ bool InvertBlock(const Double4 columns[3], Int64x4 fixed, Double4 inverse[3]) {
   return positive;
 }
 
+// A step in which waves cross fewer cells than this is solved in about as many iterations without a
+// second level.
+constexpr double kFarReach = 10;
+
 inline Float4 InPrecision(Double4 v, Float4) { return Narrow(v); }
 inline Double4 InPrecision(Double4 v, Double4) { return v; }
 inline Double4 ToDouble(Double4 v) { return v; }
@@ -72,10 +76,12 @@ double UnitNear(double size) {
 
 }  // namespace
 
-PcgSolver::PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes, Precision precision)
+PcgSolver::PcgSolver(int64_t node_count, int64_t body_nodes, std::vector<FixedNode> fixed_nodes,
+                     Precision precision)
     : fixed_nodes_(std::move(fixed_nodes)),
       blocks_(node_count),
       inverse_diagonal_(static_cast<size_t>(node_count)),
+      coarse_(node_count, body_nodes, fixed_nodes_),
       vectors_(Vectors<Double4>(0)) {
   const auto count = static_cast<size_t>(node_count);
   if (precision == Precision::kFloat) {
@@ -85,7 +91,12 @@ PcgSolver::PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes, Pre
   }
 }
 
-void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
+void PcgSolver::SetFixedNodes(std::vector<FixedNode> fixed_nodes) {
+  fixed_nodes_ = std::move(fixed_nodes);
+  if (coarse_.pays()) coarse_.SetFixedNodes(fixed_nodes_);
+}
+
+void PcgSolver::Prepare(const StiffnessMatrix& matrix, const NodalVector& positions) {
   // Of the first node from the middle on that is connected or has mass.
   double size = 0;
   for (int64_t node = matrix.node_count() / 2; size == 0 && node < matrix.node_count(); ++node) {
@@ -94,35 +105,43 @@ void PcgSolver::Prepare(const StiffnessMatrix& matrix) {
     size = std::abs(columns[0][0]) + std::abs(columns[1][1]) + std::abs(columns[2][2]);
   }
   unit_ = UnitNear(size);
-  const Double4 negatives = blocks_.Sum([&](int64_t begin, int64_t end) {
+  // Diagonal blocks that are not positive, and the traces of all and of inertia's share in them.
+  const Double4 sums = blocks_.Sum([&](int64_t begin, int64_t end) {
     auto fixed =
         std::lower_bound(fixed_nodes_.begin(), fixed_nodes_.end(), begin,
                          [](const FixedNode& entry, int64_t node) { return entry.node < node; });
-    double negative = 0;
+    Double4 sum = Splat(0);
     for (int64_t node = begin; node < end; ++node) {
       Double4 columns[3], inverse[3];
       matrix.DiagonalBlock(node, columns);
       Int64x4 axes = {0, 0, 0, 0};
       if (fixed != fixed_nodes_.end() && fixed->node == node) axes = (fixed++)->axes;
-      if (!InvertBlock(columns, axes, inverse)) negative += 1;
+      const bool positive = InvertBlock(columns, axes, inverse);
+      sum += Double4{positive ? 0.0 : 1.0, columns[0][0] + columns[1][1] + columns[2][2],
+                     3 * matrix.inertia(node), 0};
       for (int k = 0; k < 3; ++k) {
         inverse_diagonal_[static_cast<size_t>(node)].columns[k] = Narrow(unit_ * inverse[k]);
       }
     }
-    return Splat(negative);
+    return sum;
   });
-  positive_diagonal_ = negatives[0] == 0;
+  positive_diagonal_ = sums[0] == 0;
+  two_level_ = coarse_.pays() && sums[1] > kFarReach * kFarReach * sums[2] &&
+               coarse_.Prepare(matrix, positions);
 }
 
 absl::StatusOr<PcgSolver::Result> PcgSolver::Solve(const StiffnessMatrix& matrix,
                                                    const NodalVector& rhs, double tolerance,
                                                    const StopFlag& stop, NodalVector& solution) {
   return std::visit(
-      [&](auto& vectors) { return SolveIn(vectors, matrix, rhs, tolerance, stop, solution); },
+      [&](auto& vectors) {
+        return two_level_ ? SolveIn<true>(vectors, matrix, rhs, tolerance, stop, solution)
+                          : SolveIn<false>(vectors, matrix, rhs, tolerance, stop, solution);
+      },
       vectors_);
 }
 
-template <typename V>
+template <bool kTwoLevel, typename V>
 absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
                                                      const StiffnessMatrix& matrix,
                                                      const NodalVector& rhs, double tolerance,
@@ -148,18 +167,28 @@ absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
       return sum;
     }))));
   }
-  double rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
-    Double4 sum = Splat(0);
+  // Applies the preconditioner to the residual; returns their product.
+  const auto precondition = [&](std::vector<V>& target) {
+    if constexpr (kTwoLevel) coarse_.Solve(residual);
+    return Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+      Double4 sum = Splat(0);
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+        V z = Precondition(inverse_diagonal_[node], residual[node]);
+        if constexpr (kTwoLevel)
+          z += InPrecision(unit_ * coarse_.Correction(static_cast<int64_t>(node)), V{});
+        target[node] = z;
+        sum += ToDouble(residual[node] * z);
+      }
+      return sum;
+    }));
+  };
+  blocks_.Run([&](int64_t begin, int64_t end) {
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
       x[node] = V{};
-      const V r = InPrecision(rhs[node] / size, V{});
-      const V z = Precondition(inverse_diagonal_[node], r);
-      residual[node] = r;
-      direction[node] = z;
-      sum += ToDouble(r * z);
+      residual[node] = InPrecision(rhs[node] / size, V{});
     }
-    return sum;
-  }));
+  });
+  double rz = precondition(direction);
   const double target = tolerance * tolerance * rz;
   const auto limit = static_cast<int32_t>(std::min<int64_t>(10'000, 3 * matrix.node_count() + 20));
   Result result;
@@ -176,30 +205,23 @@ absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
     }));
     if (!(curvature > 0)) {
       result.positive = false;
-      if (result.iterations == 1) solution = direction_;
+      if (result.iterations == 1) x = direction;
       break;
     }
     using Scalar = std::remove_reference_t<decltype(V{}[0])>;
     const auto step = static_cast<Scalar>(rz / curvature);
-    const double next_rz = Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
-      Double4 sum = Splat(0);
+    blocks_.Run([&](int64_t begin, int64_t end) {
       for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-        const V r = residual[node] - step * product[node];
-        const V z = Precondition(inverse_diagonal_[node], r);
-        residual[node] = r;
-        preconditioned[node] = z;
-        sum += ToDouble(r * z);
+        x[node] += step * direction[node];
+        residual[node] -= step * product[node];
       }
-      return sum;
-    }));
+    });
+    const double next_rz = precondition(preconditioned);
     const auto beta = static_cast<Scalar>(next_rz / rz);
     rz = next_rz;
     blocks_.Run([&](int64_t begin, int64_t end) {
-      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
-        const V before = direction[node];
-        x[node] += step * before;
-        direction[node] = preconditioned[node] + beta * before;
-      }
+      for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+        direction[node] = preconditioned[node] + beta * direction[node];
     });
   }
   if constexpr (std::is_same_v<V, Float4>) {
@@ -218,7 +240,7 @@ int64_t PcgSolver::bytes() const {
   };
   return static_cast<int64_t>(inverse_diagonal_.size() * sizeof(InverseBlock) +
                               fixed_nodes_.size() * sizeof(FixedNode)) +
-         std::visit(of_vectors, vectors_) + blocks_.bytes();
+         std::visit(of_vectors, vectors_) + blocks_.bytes() + coarse_.bytes();
 }
 
 }  // namespace cleave

@@ -11,6 +11,7 @@
 #include "core/model/nodal_vector.h"
 #include "core/scene/scene.h"
 #include "core/solver/block_sums.h"
+#include "core/solver/coarse_space.h"
 #include "core/solver/constraints.h"
 #include "core/solver/stiffness_matrix.h"
 
@@ -22,7 +23,9 @@ namespace cleave {
 // run on the caller's TBB arena and give the same bits for any number of threads.
 class PcgSolver {
  public:
-  PcgSolver(int64_t node_count, std::vector<FixedNode> fixed_nodes, Precision precision);
+  // The first `body_nodes` of the nodes are a mesh's, numbered for locality (core/mesh/reorder.h).
+  PcgSolver(int64_t node_count, int64_t body_nodes, std::vector<FixedNode> fixed_nodes,
+            Precision precision);
 
   struct Result {
     int32_t iterations = 0;
@@ -30,10 +33,11 @@ class PcgSolver {
   };
 
   // Counts from the next Prepare on.
-  void SetFixedNodes(std::vector<FixedNode> fixed_nodes) { fixed_nodes_ = std::move(fixed_nodes); }
+  void SetFixedNodes(std::vector<FixedNode> fixed_nodes);
 
-  // Takes the diagonal of `matrix`; call it whenever the matrix changed.
-  void Prepare(const StiffnessMatrix& matrix);
+  // Takes what preconditions `matrix`; call it whenever the matrix changed. `positions` (m) are
+  // about those of the body's nodes.
+  void Prepare(const StiffnessMatrix& matrix, const NodalVector& positions);
 
   // Solves matrix * solution = rhs from 0 until the preconditioned residual norm fell by
   // `tolerance`, or the iteration limit is reached, or the matrix shows itself not positive to
@@ -62,7 +66,7 @@ class PcgSolver {
     std::vector<V> solution;  // in float; in double it is the caller's
   };
 
-  template <typename V>
+  template <bool kTwoLevel, typename V>
   absl::StatusOr<Result> SolveIn(Vectors<V>& vectors, const StiffnessMatrix& matrix,
                                  const NodalVector& rhs, double tolerance, const StopFlag& stop,
                                  NodalVector& solution);
@@ -73,6 +77,8 @@ class PcgSolver {
   double unit_ = 1;
   std::vector<InverseBlock> inverse_diagonal_;  // times the unit
   bool positive_diagonal_ = true;
+  CoarseSpace coarse_;
+  bool two_level_ = false;
   std::variant<Vectors<Double4>, Vectors<Float4>> vectors_;
 };
 

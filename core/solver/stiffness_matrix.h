@@ -27,6 +27,7 @@ class StiffnessMatrix {
   EdgeBlocks& Clear();
   // To be added to between Clear and Finish.
   NodeCouplings& couplings() { return couplings_; }
+  const NodeCouplings& couplings() const { return couplings_; }
   // Takes over what was added. `inertia` is mass / dt^2, kg/s^2, a node each, and must stay as it
   // is until the next call.
   void Finish(const std::vector<double>& inertia);
@@ -43,6 +44,20 @@ class StiffnessMatrix {
   Double4 GrossTerms(const NodalVector& x, int64_t begin, int64_t end) const;
   // The diagonal block of a node, by columns. Symmetric to float rounding.
   void DiagonalBlock(int64_t node, Double4 columns[3]) const;
+
+  // Runs body(other node, block) for every block in the row of a node, in a fixed order; a block is
+  // nine floats by columns, and pulls at the node with block * (x_node - x_other). Couplings are
+  // not among them.
+  template <typename Body>
+  void ForEachBlock(int64_t node, const Body& body) const {
+    const auto n = static_cast<size_t>(node);
+    for (int64_t edge = upper_begin_[n]; edge < upper_begin_[n + 1]; ++edge)
+      body(upper_node_[static_cast<size_t>(edge)], upper_.data() + 9 * edge);
+    for (int64_t slot = lower_begin_[n]; slot < lower_begin_[n + 1]; ++slot)
+      body(lower_node_[static_cast<size_t>(slot)], lower_.data() + 9 * slot);
+  }
+  // kg/s^2.
+  double inertia(int64_t node) const { return (*inertia_)[static_cast<size_t>(node)]; }
 
   int64_t node_count() const { return static_cast<int64_t>(upper_begin_.size()) - 1; }
   int64_t bytes() const;

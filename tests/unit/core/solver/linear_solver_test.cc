@@ -43,6 +43,11 @@ class LinearSolver : public ::testing::Test {
   const Incidence incidence_ = BuildIncidence(mesh_);
   StiffnessMatrix matrix_;
   std::vector<double> inertia_;
+  const NodalVector positions_ = [&] {
+    NodalVector positions;
+    for (const Vec3& position : mesh_.rest_positions) positions.push_back(ToDouble4(position));
+    return positions;
+  }();
 };
 
 TEST_F(LinearSolver, TheMatrixIsSymmetricAndItsDiagonalBlocksAreThose) {
@@ -93,8 +98,8 @@ TEST_F(LinearSolver, ATranslationMeetsInertiaAloneToTheLastBit) {
 TEST_F(LinearSolver, SolvesWithGivenCoordinatesAtZeroInBothPrecisions) {
   for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
     const std::vector<FixedNode> fixed = {{2, Int64x4{-1, -1, -1, 0}}, {7, Int64x4{0, -1, 0, 0}}};
-    PcgSolver pcg(mesh_.node_count(), fixed, precision);
-    pcg.Prepare(matrix_);
+    PcgSolver pcg(mesh_.node_count(), mesh_.node_count(), fixed, precision);
+    pcg.Prepare(matrix_, positions_);
     // Far outside the range of float, which is no matter of precision.
     const double size = 1e-60;
     NodalVector rhs, solution(static_cast<size_t>(mesh_.node_count()));
@@ -125,8 +130,8 @@ TEST_F(LinearSolver, NoticesAnIndefiniteMatrix) {
   for (float& entry : blocks) entry = 0;
   for (int k = 0; k < 9; k += 4) blocks[static_cast<size_t>(k)] = -1;
   matrix_.Finish(inertia_);
-  PcgSolver pcg(mesh_.node_count(), {}, Precision::kDouble);
-  pcg.Prepare(matrix_);
+  PcgSolver pcg(mesh_.node_count(), mesh_.node_count(), {}, Precision::kDouble);
+  pcg.Prepare(matrix_, positions_);
   NodalVector rhs(static_cast<size_t>(mesh_.node_count()), Double4{1, 0, 0, 0}), solution = rhs;
   rhs[0] = Double4{-1, 2, 0, 0};
   const StopFlag stop;
@@ -136,8 +141,8 @@ TEST_F(LinearSolver, NoticesAnIndefiniteMatrix) {
 }
 
 TEST_F(LinearSolver, StopsWhenAsked) {
-  PcgSolver pcg(mesh_.node_count(), {}, Precision::kDouble);
-  pcg.Prepare(matrix_);
+  PcgSolver pcg(mesh_.node_count(), mesh_.node_count(), {}, Precision::kDouble);
+  pcg.Prepare(matrix_, positions_);
   NodalVector rhs(static_cast<size_t>(mesh_.node_count()), Double4{1, 2, 3, 0}), solution = rhs;
   rhs[0] = Double4{-1, 2, 0, 0};
   StopFlag stop;
