@@ -61,8 +61,17 @@ void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
   }
 }
 
+void EdgeFracture::UpdateThresholds() {
+  min_threshold_ = kUnbreakable;
+  for (size_t edge = 0; edge < broken_.size(); ++edge) {
+    if (broken_[edge] == 0)
+      min_threshold_ = std::min(min_threshold_, Weakest(static_cast<int32_t>(edge)));
+  }
+}
+
 double EdgeFracture::Weakest(int32_t edge) const {
-  return strengths_.kappa[edge] * std::min(strengths_.tensile[edge], strengths_.compressive[edge]);
+  const double left = strengths_.kappa[edge] * strengths_.residual[edge];
+  return left == 0 ? 0 : left * std::min(strengths_.tensile[edge], strengths_.compressive[edge]);
 }
 
 PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effective_stress) {
@@ -153,6 +162,8 @@ EdgeFracture::EdgeLoad EdgeFracture::LoadOf(int32_t edge, std::span<const Vec3> 
 double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
                              Stress effective_stress) const {
   if (broken_[static_cast<size_t>(edge)] != 0) return 0;
+  const double left = strengths_.kappa[edge] * strengths_.residual[edge];
+  if (left == 0) return kUnbreakable;  // its life is over: the worst ratio there is
   // Neither the mean nor the largest exceeds every tet's.
   const std::span<const int32_t> tets = incidence_.edge_tets[edge];
   const bool hot = std::any_of(tets.begin(), tets.end(), [&](int32_t tet) {
@@ -160,11 +171,10 @@ double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
   });
   if (!hot) return 0;
   const EdgeLoad load = LoadOf(edge, positions, effective_stress);
-  const double kappa = strengths_.kappa[edge];
   double ratio = 0;
-  if (load.tension > 0) ratio = load.tension / (strengths_.tensile[edge] * kappa);
+  if (load.tension > 0) ratio = load.tension / (strengths_.tensile[edge] * left);
   if (load.compression > 0)
-    ratio = std::max(ratio, load.compression / (strengths_.compressive[edge] * kappa));
+    ratio = std::max(ratio, load.compression / (strengths_.compressive[edge] * left));
   return ratio;
 }
 

@@ -24,7 +24,8 @@ inline constexpr double kDeadFactor = 1e-3;
 inline constexpr double kUnbreakable = std::numeric_limits<double>::infinity();  // Pa
 inline constexpr double kFullStrength = 1;
 
-// What edges withstand: thresholds times kappa. A record an edge or one for all each.
+// What edges withstand: thresholds times kappa times residual. A record an edge or one for all
+// each.
 struct EdgeStrengths {
   // The tensile thresholds alone are strengths.
   EdgeStrengths(Broadcast<double> tensile_thresholds)  // NOLINT(google-explicit-constructor)
@@ -34,6 +35,8 @@ struct EdgeStrengths {
   // Pa, of compressive stress, > 0; infinite never breaks.
   Broadcast<double> compressive = Broadcast<double>::Uniform(kUnbreakable);
   Broadcast<double> kappa = Broadcast<double>::Uniform(kFullStrength);  // > 0, of impurities
+  // What fatigue has left of both strengths, [0, 1]; at 0 an edge breaks under any load or none.
+  Broadcast<double> residual = Broadcast<double>::Uniform(kFullStrength);
 };
 
 struct FractureSettings {
@@ -80,7 +83,7 @@ class EdgeFracture {
  public:
   // `mesh`, `incidence` and what `strengths` point to must outlive this object. Rest volumes are
   // positive. A tensile threshold of 0 is cut here and now. Strengths change later only as
-  // LowerThresholds says. simultaneity is in (0, 1].
+  // LowerThresholds and UpdateThresholds say. simultaneity is in (0, 1].
   EdgeFracture(const TetMesh& mesh, const Incidence& incidence, const EdgeStrengths& strengths,
                const FractureSettings& settings);
 
@@ -92,9 +95,10 @@ class EdgeFracture {
   PassResult BreakPass(std::span<const Vec3> positions,
                        std::span<const Eigen::Matrix3d> effective_stress);
 
-  // To be called when the strengths of these edges have fallen, or any have risen again with a
-  // Restore: they count from the next pass on.
+  // To be called when the strengths of these edges have fallen; they count from the next pass on.
   void LowerThresholds(std::span<const int32_t> edges);
+  // The same when any strengths have changed.
+  void UpdateThresholds();
 
   // The aggregated stress of every edge, Pa, negative in compression; where the largest counts,
   // that of tension. 0 for broken edges. `stresses` has an edge each.

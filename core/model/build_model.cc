@@ -190,6 +190,37 @@ std::vector<double> NodeStiffness(const std::vector<Material>& materials,
   return stiffness;
 }
 
+// How edges tire. An edge has the law of the material that its strength is of: the weakest of its
+// tets', of equally weak ones that of the lowest tet.
+FatiguePart FatigueOf(const std::vector<Material>& materials,
+                      const std::vector<int32_t>& material_of, const Incidence& incidence) {
+  FatiguePart part;
+  std::vector<int16_t> law_of;  // a material each
+  for (const Material& material : materials) {
+    law_of.push_back(material.fatigue ? static_cast<int16_t>(part.laws.size()) : int16_t{-1});
+    if (!material.fatigue) continue;
+    const Fatigue& fatigue = *material.fatigue;
+    const double strength = *material.tensile_strength;
+    part.laws.push_back({fatigue.strength_coefficient / strength, -1 / fatigue.strength_exponent,
+                         fatigue.endurance_limit.value_or(0) / strength,
+                         fatigue.degradation_exponent});
+  }
+  if (materials.size() == 1) return part;
+  std::vector<double> strengths(incidence.edges.size(), kUnbreakable);
+  part.edge_laws.assign(incidence.edges.size(), -1);
+  for (size_t tet = 0; tet < material_of.size(); ++tet) {
+    const auto material = static_cast<size_t>(material_of[tet]);
+    const double strength = materials[material].tensile_strength.value_or(kUnbreakable);
+    for (const int32_t edge : incidence.tet_edges[tet]) {
+      const auto e = static_cast<size_t>(edge);
+      if (!(strength < strengths[e])) continue;
+      strengths[e] = strength;
+      part.edge_laws[e] = law_of[material];
+    }
+  }
+  return part;
+}
+
 // The client's ids of the solver's edges: ranks by the client's node ids.
 std::vector<int32_t> ClientEdges(const Incidence& incidence, const MeshOrder& order) {
   struct Entry {
@@ -337,6 +368,9 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       part.edge_projected = term.get();
       model.tet_terms.push_back(std::move(term));
     }
+
+    // Fatigue.
+    if (Tires(scene)) part.fatigue = FatigueOf(scene.materials, material_of, *model.incidence);
 
     // Impurities, which change its thresholds.
     if (scene.impurities && scene.impurities->model != ImpurityModel::kOff)

@@ -9,6 +9,7 @@
 
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
+#include "core/damage/fatigue.h"
 #include "core/model/collider_term.h"
 #include "core/model/edge_projected_term.h"
 #include "core/model/elastic_term.h"
@@ -131,6 +132,10 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     add("compressive strength", (uniform && scene.weakenings.empty() ? 1 : edges) * kDouble);
   if (breaks && scene.fracture.reformulation == Reformulation::kEdgeProjected)
     add("edge-projected tets", tets * EdgeProjectedTerm::TetBytes());  // at most
+  if (Tires(scene)) {
+    add("fatigue", FatigueDamage::BytesOf(edges) + edges * kDouble +  // stresses
+                       (uniform ? 0 : edges * static_cast<int64_t>(sizeof(int16_t))));
+  }
   if (breaks && scene.impurities && scene.impurities->model != ImpurityModel::kOff) {
     const Impurities& impurities = *scene.impurities;
     add("impurities",

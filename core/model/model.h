@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/vec3.h"
+#include "core/damage/fatigue.h"
 #include "core/damage/fracture.h"
 #include "core/damage/random_graph.h"
 #include "core/mesh/incidence.h"
@@ -29,6 +30,12 @@ struct ImpurityPart {
   std::vector<int32_t> edge_deal;  // an edge each, where strengths are dealt out: whose it has
 };
 
+// What a body that tires has besides.
+struct FatiguePart {
+  std::vector<FatigueLaw> laws;
+  std::vector<int16_t> edge_laws;  // of an edge each, -1 for none; empty: the first for all
+};
+
 // What a body that can break has besides.
 struct FracturePart {
   std::vector<double> edge_thresholds;  // Pa, of tension, an edge each, or one for all
@@ -40,6 +47,7 @@ struct FracturePart {
   // Which of the tet terms takes over damaged tets, where they are edge-projected.
   EdgeProjectedTerm* edge_projected = nullptr;
   std::optional<ImpurityPart> impurities;
+  std::optional<FatiguePart> fatigue;
 };
 
 class ColliderTerm;

@@ -25,7 +25,11 @@ inline constexpr double kMaxPotency = 100;          // strength stops changing w
 inline constexpr double kMaxPotencyNoise = 10;
 inline constexpr double kMaxSteepness = 100;  // k: strengths span a factor of 2 k
 inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly differ from here on
-inline constexpr double kMaxDensity = 1e6;    // kg/m^3; osmium has 22 590
+// b of Basquin's law: beyond it life hardly depends on load, or jumps from 0 to infinity with it.
+inline constexpr double kMinFatigueExponent = -1;
+inline constexpr double kMaxFatigueExponent = -0.01;
+inline constexpr double kMaxDegradationExponent = 1000;  // strength falls at the last cycle only
+inline constexpr double kMaxDensity = 1e6;               // kg/m^3; osmium has 22 590
 
 inline constexpr double kMaxPressure =
     kMaxYoungsModulus;                        // Pa; more crushes any material to nothing

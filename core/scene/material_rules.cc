@@ -94,6 +94,27 @@ void CheckPlasticity(const std::string& field, const Material& material,
   }
 }
 
+void CheckFatigue(const std::string& field, const Material& material, const Fatigue& fatigue,
+                  Faults& faults, Checker& check) {
+  check.Above(field + ".strength_coefficient", fatigue.strength_coefficient, 0,
+              limits::kMaxYoungsModulus);
+  check.Within(field + ".strength_exponent", fatigue.strength_exponent, limits::kMinFatigueExponent,
+               limits::kMaxFatigueExponent);
+  if (fatigue.endurance_limit.has_value())
+    check.Within(field + ".endurance_limit", *fatigue.endurance_limit, 0,
+                 limits::kMaxYoungsModulus);
+  check.Above(field + ".degradation_exponent", fatigue.degradation_exponent, 0,
+              limits::kMaxDegradationExponent);
+  const double strength = material.tensile_strength.value_or(0);
+  if (!(strength > 0 && std::isfinite(strength))) {
+    faults.Error(field, "needs a tensile_strength above 0 and finite: it is what cycles take from");
+  } else if (fatigue.strength_coefficient < strength) {
+    faults.Warning(field + ".strength_coefficient",
+                   absl::StrCat(fatigue.strength_coefficient, " Pa is below the tensile strength, ",
+                                strength, " Pa: loads near it last less than a cycle"));
+  }
+}
+
 }  // namespace
 
 void CheckMaterial(const std::string& field, const Material& material, Faults& faults,
@@ -133,6 +154,8 @@ void CheckMaterial(const std::string& field, const Material& material, Faults& f
     if (!(strength > 0))
       faults.Error(at("compressive_strength"), absl::StrCat(strength, " is outside (0, inf]"));
   }
+  if (material.fatigue.has_value())
+    CheckFatigue(at("fatigue"), material, *material.fatigue, faults, check);
   if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) return;
   for (size_t k = 0; k < material.fibres.size(); ++k)
     CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);

@@ -87,6 +87,18 @@ struct Plasticity {
   std::optional<double> failure_strain = std::nullopt;
 };
 
+// How strength falls with load cycles (beyond the paper): Basquin's law sigma_a = sigma_f' (2
+// N_f)^b for the amplitude that breaks after N_f reversed cycles, shares of life added up after
+// Miner.
+struct Fatigue {
+  double strength_coefficient = 0;        // sigma_f', Pa
+  double strength_exponent = 0;           // b < 0; of metals about -0.05 to -0.12
+  std::optional<double> endurance_limit;  // Pa, amplitude up to which cycles do nothing
+  // nu: strength falls with this power of the share of life that is over, to the load's peak at
+  // the end; a large one keeps it to the last.
+  double degradation_exponent = 1;
+};
+
 // A material and the regions that it fills. Later materials win where regions overlap.
 struct Material {
   std::string name;
@@ -100,6 +112,7 @@ struct Material {
   std::optional<double> compressive_strength;
   std::vector<FibreFamily> fibres;
   std::optional<Plasticity> plasticity;  // absent: elastic until it breaks
+  std::optional<Fatigue> fatigue;        // absent: load cycles do not weaken it
 };
 
 struct BoxSelector {
@@ -387,6 +400,14 @@ struct Scene {
   Output output;
   uint32_t seed = 0;
 };
+
+// Whether load cycles weaken anything.
+inline bool Tires(const Scene& scene) {
+  for (const Material& material : scene.materials) {
+    if (material.fatigue.has_value()) return true;
+  }
+  return false;
+}
 
 // Whether anything in the scene can break or is cut.
 inline bool CanBreak(const Scene& scene) {

@@ -51,6 +51,14 @@ void PutFibres(const FibreFamily& family, ByteWriter& out) {
   }
 }
 
+void PutFatigue(const Fatigue& fatigue, ByteWriter& out) {
+  out.Put(fatigue.strength_coefficient);
+  out.Put(fatigue.strength_exponent);
+  out.Put<uint8_t>(fatigue.endurance_limit.has_value());
+  out.Put(fatigue.endurance_limit.value_or(0));
+  out.Put(fatigue.degradation_exponent);
+}
+
 void PutPlasticity(const Plasticity& plasticity, ByteWriter& out) {
   out.Put(plasticity.yield_stress);
   out.Put(plasticity.hardening);
@@ -183,6 +191,8 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     out.Put(material.compressive_strength.value_or(0));
     out.Put<uint64_t>(material.fibres.size());
     for (const FibreFamily& family : material.fibres) PutFibres(family, out);
+    out.Put<uint8_t>(material.fatigue.has_value());
+    if (material.fatigue) PutFatigue(*material.fatigue, out);
     out.Put<uint8_t>(material.plasticity.has_value());
     if (material.plasticity) PutPlasticity(*material.plasticity, out);
   }

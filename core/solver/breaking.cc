@@ -1,7 +1,6 @@
 #include "core/solver/breaking.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -14,10 +13,13 @@ Broadcast<double> OneOrEach(const std::vector<double>& values) {
                             : Broadcast<double>::PerItem(values.data());
 }
 
-EdgeStrengths StrengthsOf(const FracturePart& part, const std::optional<RandomGraph>& graph) {
+EdgeStrengths StrengthsOf(const FracturePart& part, const std::optional<RandomGraph>& graph,
+                          const std::optional<FatigueDamage>& fatigue) {
   EdgeStrengths strengths(OneOrEach(part.edge_thresholds));
   if (!part.compressive_thresholds.empty())
     strengths.compressive = OneOrEach(part.compressive_thresholds);
+  if (fatigue)
+    strengths.residual = Broadcast<double>::PerItem(fatigue->residual_strengths().data());
   if (graph) strengths.kappa = Broadcast<double>::PerItem(graph->factors().data());
   return strengths;
 }
@@ -29,25 +31,33 @@ std::optional<RandomGraph> GraphOf(const Model& model) {
                      part.edge_deal);
 }
 
+std::optional<FatigueDamage> FatigueOf(const Model& model) {
+  if (!model.fracture->fatigue) return std::nullopt;
+  const FatiguePart& part = *model.fracture->fatigue;
+  return FatigueDamage(model.incidence->edge_count(), part.laws, part.edge_laws);
+}
+
 }  // namespace
 
 Breaking::Breaking(const Model& model)
     : model_(model),
       graph_(GraphOf(model)),
-      fracture_(*model.mesh, *model.incidence, StrengthsOf(*model.fracture, graph_),
+      fatigue_(FatigueOf(model)),
+      fracture_(*model.mesh, *model.incidence, StrengthsOf(*model.fracture, graph_, fatigue_),
                 model.fracture->settings),
       positions_(model.masses.size()),
-      stresses_(static_cast<size_t>(model.tet_count())) {
+      stresses_(static_cast<size_t>(model.tet_count())),
+      edge_stresses_(fatigue_ ? static_cast<size_t>(model.incidence->edge_count()) : 0) {
   // Edges without strength are cut before anything moves.
   if (fracture_.broken_edge_count() > 0) {
     // At rest nothing has energy that could rise.
     ApplyDamage(std::vector<double>(ProjectedTets().size(), 1.0));
-    ResetGraph();
+    ResetStrengths();
   }
   Mark();
 }
 
-int64_t Breaking::BreakPass(const NodalVector& displacements) {
+void Breaking::FindStresses(const NodalVector& displacements) {
   ParallelFor(model_.node_count(), 4096, [&](int64_t begin, int64_t end) {
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
       positions_[node] = ToVec3(ToDouble4(model_.mesh->rest_positions[node]) + displacements[node]);
@@ -57,10 +67,25 @@ int64_t Breaking::BreakPass(const NodalVector& displacements) {
     std::fill(stresses_.begin() + begin, stresses_.begin() + end, Eigen::Matrix3d::Zero());
   });
   for (const auto& term : model_.tet_terms) term->AddEffectiveStress(displacements, stresses_);
+}
+
+int64_t Breaking::BreakPass(const NodalVector& displacements) {
+  FindStresses(displacements);
   const PassResult result = fracture_.BreakPass(positions_, stresses_);
   for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
   if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
+  stresses_are_last_ = result.broken_edges.empty();
   return static_cast<int64_t>(result.broken_edges.size());
+}
+
+void Breaking::EndStep(const NodalVector& displacements) {
+  if (!fatigue_) return;
+  // After the last pass that a step may have, the body was solved for once more.
+  if (!stresses_are_last_) FindStresses(displacements);
+  fracture_.EdgeStresses(positions_, stresses_, edge_stresses_);
+  const EdgeStrengths strengths = StrengthsOf(*model_.fracture, graph_, fatigue_);
+  if (fatigue_->Follow(edge_stresses_, strengths.tensile, strengths.kappa))
+    fracture_.UpdateThresholds();
 }
 
 void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
@@ -90,17 +115,22 @@ void Breaking::Mark() {
   if (!mark_.empty() && marked_broken_edges_ == fracture_.broken_edge_count()) return;
   mark_.clear();
   ByteWriter out(mark_);
-  Save(out);
+  SaveBroken(out);
   marked_broken_edges_ = fracture_.broken_edge_count();
 }
 
 absl::Status Breaking::RollBack() {
   if (marked_broken_edges_ == fracture_.broken_edge_count()) return absl::OkStatus();
   ByteReader in(mark_);
-  return Load(in);
+  return LoadBroken(in);
 }
 
 void Breaking::Save(ByteWriter& out) const {
+  SaveBroken(out);
+  if (fatigue_) fatigue_->Save(out);
+}
+
+void Breaking::SaveBroken(ByteWriter& out) const {
   fracture_.Save(out);
   if (model_.fracture->edge_projected != nullptr)
     out.PutVector(model_.fracture->edge_projected->betas());
@@ -110,18 +140,20 @@ absl::Status Breaking::Restore(ByteReader& in) {
   std::string before;
   ByteWriter out(before);
   Save(out);
-  const absl::Status status = Load(in);
+  absl::Status status = LoadBroken(in);
+  if (status.ok() && fatigue_) status = fatigue_->Restore(in);
   if (!status.ok()) {
     ByteReader again(before);
-    CLEAVE_RETURN_IF_ERROR(Load(again));
+    CLEAVE_RETURN_IF_ERROR(LoadBroken(again));
     return status;
   }
+  if (fatigue_) fracture_.UpdateThresholds();
   mark_.clear();
   Mark();
   return absl::OkStatus();
 }
 
-absl::Status Breaking::Load(ByteReader& in) {
+absl::Status Breaking::LoadBroken(ByteReader& in) {
   CLEAVE_RETURN_IF_ERROR(fracture_.Restore(in));
   std::vector<double> betas;
   if (model_.fracture->edge_projected != nullptr) {
@@ -132,16 +164,13 @@ absl::Status Breaking::Load(ByteReader& in) {
       return absl::DataLossError("fracture state: what is left of tets contradicts their edges");
   }
   ApplyDamage(betas);
-  ResetGraph();
+  ResetStrengths();
   return absl::OkStatus();
 }
 
-void Breaking::ResetGraph() {
-  if (!graph_) return;
-  graph_->Reset(fracture_.edge_broken());
-  std::vector<int32_t> edges(static_cast<size_t>(model_.incidence->edge_count()));
-  std::iota(edges.begin(), edges.end(), 0);
-  fracture_.LowerThresholds(edges);
+void Breaking::ResetStrengths() {
+  if (graph_) graph_->Reset(fracture_.edge_broken());
+  fracture_.UpdateThresholds();
 }
 
 std::vector<int32_t> Breaking::ProjectedTets() const {
@@ -182,7 +211,7 @@ std::vector<int32_t> Breaking::ClientBrokenEdges() const {
 int64_t Breaking::bytes() const {
   return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
                               stresses_.size() * sizeof(Eigen::Matrix3d) + mark_.size()) +
-         (graph_ ? graph_->bytes() : 0);
+         (graph_ ? graph_->bytes() : 0) + (fatigue_ ? fatigue_->bytes() : 0);
 }
 
 }  // namespace cleave

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "core/base/vec3.h"
+#include "core/damage/fatigue.h"
 #include "core/damage/fracture.h"
 #include "core/damage/random_graph.h"
 #include "core/model/model.h"
@@ -28,6 +29,9 @@ class Breaking {
   // One break pass at these displacements (m); the terms carry the new damage afterwards. Returns
   // the number of newly broken edges.
   int64_t BreakPass(const NodalVector& displacements);
+
+  // To be called when a step has ended at these displacements (m) and will not be rolled back.
+  void EndStep(const NodalVector& displacements);
 
   // Keeps the present state, for RollBack to return to.
   void Mark();
@@ -54,16 +58,23 @@ class Breaking {
   std::vector<int32_t> ProjectedTets() const;
   Matrix6 RestModuli(int32_t tet) const;
 
-  absl::Status Load(ByteReader& in);
+  // Broken edges and what they leave of tets: what changes within a step.
+  void SaveBroken(ByteWriter& out) const;
+  absl::Status LoadBroken(ByteReader& in);
+  // Sets `positions_` and `stresses_`.
+  void FindStresses(const NodalVector& displacements);
 
-  // The graph's bonds are the unbroken edges.
-  void ResetGraph();
+  // Strengths are those of the unbroken edges.
+  void ResetStrengths();
 
   const Model& model_;
-  std::optional<RandomGraph> graph_;  // where the model has impurities
+  std::optional<RandomGraph> graph_;      // where the model has impurities
+  std::optional<FatigueDamage> fatigue_;  // where its materials tire
   EdgeFracture fracture_;
   std::vector<Vec3> positions_;            // m
   std::vector<Eigen::Matrix3d> stresses_;  // Pa
+  std::vector<double> edge_stresses_;      // Pa, where the materials tire
+  bool stresses_are_last_ = false;         // those of the last solve
   std::string mark_;
   int64_t marked_broken_edges_ = 0;
 };

@@ -117,6 +117,10 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
   state.displacements.swap(displacements_);
+  if (breaking_) {
+    ScopedTimer timer(report.fracture_seconds);
+    breaking_->EndStep(state.displacements);
+  }
   double stored_energy = 0;
   for (const auto& term : model_.node_terms) {
     const NodeTermWork work = term->EndStep(state);

@@ -183,6 +183,15 @@ class Converter {
       family.direction = Direction(absl::StrCat(field, ".fibres[", i, "]"), from);
       if (from.has_strength_ratio()) family.strength_ratio = from.strength_ratio();
     }
+    if (message.has_fatigue()) {
+      const v1::Fatigue& from = message.fatigue();
+      Fatigue& fatigue = material.fatigue.emplace();
+      fatigue.strength_coefficient = from.strength_coefficient();
+      fatigue.strength_exponent = from.strength_exponent();
+      if (from.has_endurance_limit()) fatigue.endurance_limit = from.endurance_limit();
+      if (from.has_degradation_exponent())
+        fatigue.degradation_exponent = from.degradation_exponent();
+    }
     if (message.has_plasticity()) {
       const v1::Plasticity& from = message.plasticity();
       Plasticity& plasticity = material.plasticity.emplace();

@@ -304,6 +304,14 @@ v1::Material MessageFromMaterial(const Material& material) {
     std::visit(WriteDirection{fibres}, family.direction);
     fibres->set_strength_ratio(family.strength_ratio);
   }
+  if (material.fatigue.has_value()) {
+    v1::Fatigue* fatigue = message.mutable_fatigue();
+    fatigue->set_strength_coefficient(material.fatigue->strength_coefficient);
+    fatigue->set_strength_exponent(material.fatigue->strength_exponent);
+    if (material.fatigue->endurance_limit.has_value())
+      fatigue->set_endurance_limit(*material.fatigue->endurance_limit);
+    fatigue->set_degradation_exponent(material.fatigue->degradation_exponent);
+  }
   if (material.plasticity.has_value()) {
     v1::Plasticity* plasticity = message.mutable_plasticity();
     plasticity->set_yield_stress(material.plasticity->yield_stress);

@@ -94,6 +94,12 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   EXPECT_EQ(Names(Plan(scene)).back(), "impurities");
   EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
   scene = minimal;
+  scene.materials[0].tensile_strength = 1e5;
+  EXPECT_EQ(BytesOf(Plan(scene), "fatigue"), -1);
+  scene.materials[0].fatigue = Fatigue{1e6, -0.1, {}, 1};
+  EXPECT_EQ(Names(Plan(scene)).back(), "fatigue");
+  EXPECT_EQ(BytesOf(Plan(scene), "fatigue"), 6000 * (64 + 8 + 8));
+  scene = minimal;
   scene.fracture.reformulation = Reformulation::kEdgeProjected;
   EXPECT_EQ(Plan(scene).total_bytes, base.total_bytes);
   scene.materials[0].tensile_strength = 1e5;

@@ -164,6 +164,30 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
       {"materials[0].density", [](Scene& s) { s.materials[0].density = -3; }},
       {"materials[0].tensile_strength", [](Scene& s) { s.materials[0].tensile_strength = -1; }},
       {"materials[0].tensile_strength", [](Scene& s) { s.materials[0].tensile_strength = kNan; }},
+      {"materials[0].fatigue",
+       [](Scene& s) {
+         s.materials[0].fatigue = Fatigue{1e6, -0.1, {}, 1};
+       }},
+      {"materials[0].fatigue.strength_coefficient",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].fatigue = Fatigue{0, -0.1, {}, 1};
+       }},
+      {"materials[0].fatigue.strength_exponent",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].fatigue = Fatigue{1e6, 0.1, {}, 1};
+       }},
+      {"materials[0].fatigue.endurance_limit",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].fatigue = Fatigue{1e6, -0.1, kNan, 1};
+       }},
+      {"materials[0].fatigue.degradation_exponent",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].fatigue = Fatigue{1e6, -0.1, {}, 0};
+       }},
       {"materials[0].compressive_strength",
        [](Scene& s) { s.materials[0].compressive_strength = 0; }},
       {"node_sets[0].name", [](Scene& s) { s.node_sets[0].name = std::string(500, 'x'); }},

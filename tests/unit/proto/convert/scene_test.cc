@@ -35,6 +35,12 @@ constexpr char kEveryField[] = R"pb(
     density: 1900
     tensile_strength: 3e6
     compressive_strength: 2e7
+    fatigue {
+      strength_coefficient: 5e6
+      strength_exponent: -0.09
+      endurance_limit: 1e6
+      degradation_exponent: 2
+    }
     law: ELASTIC_LAW_COROTATED_LINEAR
     fibres {
       stiffness: 1e6
@@ -151,7 +157,11 @@ constexpr char kEveryField[] = R"pb(
     margin: 0.01
     rotation_center: [ 1, 0, 0 ]
     rotation_axis: [ 0, 1, 0 ]
-    keyframes { time: 1 rotation: 2 translation: [ 0, 0, 1 ] }
+    keyframes {
+      time: 1
+      rotation: 2
+      translation: [ 0, 0, 1 ]
+    }
   }
   colliders {
     sphere {
