@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <vector>
 
@@ -152,6 +153,48 @@ TEST(Impurities, ASeedGivesItsOwnCracks) {
   EXPECT_EQ(Break(scene).edges, first.edges);
   scene.seed = 1;
   EXPECT_NE(Break(scene).edges, first.edges);
+}
+
+double Jaccard(const std::vector<int32_t>& a, const std::vector<int32_t>& b) {
+  std::vector<int32_t> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return static_cast<double>(common.size()) /
+         static_cast<double>(a.size() + b.size() - common.size());
+}
+
+// Cracks of Gaussian and of uniform noise are no farther apart than those of two seeds.
+TEST(Impurities, TheDistributionOfNoiseMattersNoMoreThanTheSeed) {
+  constexpr int kSeeds = 3;
+  std::vector<std::vector<int32_t>> cracks[2];
+  for (const size_t kind : {0u, 1u}) {
+    Scene scene = PulledSlab();
+    scene.impurities = Impurities{.potency = 0.5, .patches = {{"band", 1}}, .noise = 0.3};
+    scene.impurities->distribution =
+        kind == 0 ? NoiseDistribution::kGaussian : NoiseDistribution::kUniform;
+    for (uint32_t seed = 0; seed < kSeeds; ++seed) {
+      scene.seed = seed;
+      cracks[kind].push_back(Break(scene).edges);
+    }
+  }
+  double between = 0, within = 0, least = 1, most = 0;
+  int pairs = 0;
+  for (size_t a = 0; a < kSeeds; ++a) {
+    for (size_t b = 0; b < kSeeds; ++b) between += Jaccard(cracks[0][a], cracks[1][b]);
+    for (size_t b = 0; b < a; ++b) {
+      for (const auto& kind : cracks) {
+        const double overlap = Jaccard(kind[a], kind[b]);
+        within += overlap;
+        least = std::min(least, overlap);
+        most = std::max(most, overlap);
+        ++pairs;
+      }
+    }
+  }
+  between /= kSeeds * kSeeds;
+  within /= pairs;
+  EXPECT_GT(between, least);
+  EXPECT_NEAR(between, within, most - least) << "between " << between << ", within " << within;
+  EXPECT_LT(most, 1);  // seeds differ at all
 }
 
 }  // namespace
