@@ -1,5 +1,7 @@
-// Prints what a step costs and where the time goes, for boxes of growing size that are pulled until
-// they break: the table that later work is held against. `cleave_bench [tets...]` runs other sizes.
+// Prints what a step costs and where the time goes: what fibres, impurities and precision cost
+// against the plain body, the column of the method's paper, and boxes of growing size that are
+// pulled until they break. `cleave_bench ratios`, `cleave_bench column` and `cleave_bench
+// [tets...]` print one of the tables.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -19,6 +21,7 @@
 #include "core/stream/frame_encoder.h"
 #include "core/surface/extract_surface.h"
 #include "core/surface/point_motion.h"
+#include "tests/bench/core/step_cost.h"
 
 namespace cleave {
 namespace {
@@ -153,26 +156,35 @@ absl::Status MeasureAll(const std::vector<double>& sizes) {
   return absl::OkStatus();
 }
 
-int Main(const std::vector<double>& sizes) {
+absl::Status PrintGrowth(const std::vector<double>& sizes) {
   std::printf(
-      "Steps of a pulled bar: elastic; with linear solves to 1e-6; breaking, 4 passes.\n\n");
+      "\nSteps of a pulled bar: elastic; with linear solves to 1e-6; breaking, 4 passes.\n\n");
   std::printf("%8s %-8s %7s %8s %7s %20s %17s %23s %18s\n", "", "", "", "a step", "a step",
               "share of the step", "seconds a frame", "iterations a step", "cost of one");
   std::printf("%8s %-8s %7s %8s %7s %6s %6s %6s %8s %8s %7s %7s %7s %9s %8s %7s %7s\n", "tets",
               "phase", "threads", "s", "us/tet", "assem", "linear", "fract", "surface", "encode",
               "newton", "cg", "passes", "newton ms", "cg us", "broken", "setup s");
-  const absl::Status status = MeasureAll(sizes);
-  if (status.ok()) return 0;
-  std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
-  return 1;
+  return MeasureAll(sizes);
+}
+
+absl::Status Run(const std::vector<std::string>& arguments) {
+  const std::string table = arguments.empty() ? "" : arguments[0];
+  if (table == "ratios") return PrintRatios();
+  if (table == "column") return PrintColumn();
+  std::vector<double> sizes;
+  for (const std::string& size : arguments) sizes.push_back(std::atof(size.c_str()));
+  if (!sizes.empty()) return PrintGrowth(sizes);
+  CLEAVE_RETURN_IF_ERROR(PrintRatios());
+  CLEAVE_RETURN_IF_ERROR(PrintColumn());
+  return PrintGrowth({10e3, 40e3, 250e3});
 }
 
 }  // namespace
 }  // namespace cleave
 
 int main(int argc, char** argv) {
-  std::vector<double> sizes;
-  for (int k = 1; k < argc; ++k) sizes.push_back(std::atof(argv[k]));
-  if (sizes.empty()) sizes = {10e3, 40e3, 250e3};
-  return cleave::Main(sizes);
+  const absl::Status status = cleave::Run({argv + 1, argv + argc});
+  if (status.ok()) return 0;
+  std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
+  return 1;
 }
