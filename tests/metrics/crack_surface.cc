@@ -95,6 +95,27 @@ std::vector<CrackFacet> SmoothedCrack(std::span<const CrackFacet> crack, double 
   return smooth;
 }
 
+std::vector<std::vector<CrackFacet>> CrackParts(std::span<const CrackFacet> crack, double reach) {
+  std::vector<std::vector<CrackFacet>> parts;
+  std::vector<uint8_t> taken(crack.size(), 0);
+  for (size_t first = 0; first < crack.size(); ++first) {
+    if (taken[first] != 0) continue;
+    taken[first] = 1;
+    std::vector<CrackFacet> part = {crack[first]};
+    for (size_t next = 0; next < part.size(); ++next) {
+      for (size_t other = 0; other < crack.size(); ++other) {
+        if (taken[other] != 0) continue;
+        const Vector3d away = Load(crack[other].center) - Load(part[next].center);
+        if (away.squaredNorm() > reach * reach) continue;
+        taken[other] = 1;
+        part.push_back(crack[other]);
+      }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
 double CrackArea(std::span<const CrackFacet> crack) {
   double area = 0;
   for (const CrackFacet& facet : crack) area += facet.area;

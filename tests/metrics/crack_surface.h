@@ -38,6 +38,10 @@ std::vector<CrackFacet> CrackOfPieces(const TetMesh& mesh, const Incidence& inci
 // fibres about 0.3; these are the crack that the eye sees.
 std::vector<CrackFacet> SmoothedCrack(std::span<const CrackFacet> crack, double radius);
 
+// The parts of a crack: facets whose centres a chain of steps of at most `reach` (m) joins. In the
+// order of their first facets.
+std::vector<std::vector<CrackFacet>> CrackParts(std::span<const CrackFacet> crack, double reach);
+
 double CrackArea(std::span<const CrackFacet> crack);  // m^2
 
 // A(a): the mean of |n.a| over the crack by area; 0 where the crack contains the direction, 1 where

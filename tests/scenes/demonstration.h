@@ -25,7 +25,7 @@ namespace cleave {
 // Which of a demonstration's bodies.
 struct Setting {
   std::string variant = {};  // "iso", "fibre30" ...; each lists its own
-  uint32_t seed = 1;    // of mesh and impurities
+  uint32_t seed = 1;         // of mesh and impurities
   MeshLayout layout = MeshLayout::kUnstructured;
   double coarseness = 1;  // cells this many times as long as at full size
 };

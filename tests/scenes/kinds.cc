@@ -1,20 +1,36 @@
 // The list of all demonstrations.
 
-#include <array>
+#include <vector>
 
+#include "tests/scenes/branch.h"
+#include "tests/scenes/column.h"
 #include "tests/scenes/demonstration.h"
 #include "tests/scenes/fibre_bar.h"
+#include "tests/scenes/locality.h"
+#include "tests/scenes/slab_trio.h"
 
 namespace cleave {
 
 std::span<const DemonstrationKind> DemonstrationKinds() {
-  static const std::array kKinds = {
-      DemonstrationKind{"fibre_bar",
-                        "Eq. 6",
-                        {"fibre0", "fibre30", "fibre60", "fibre90", "iso0", "iso30", "iso60",
-                         "iso90", "plain30", "plain60", "stiff30", "stiff60"},
-                        MakeFibreBar,
-                        MeasureFibreBar},
+  static const std::vector<DemonstrationKind> kKinds = {
+      {"fibre_bar",
+       "Eq. 6",
+       {"fibre0", "fibre30", "fibre60", "fibre90", "iso0", "iso30", "iso60", "iso90", "plain30",
+        "plain60", "stiff30", "stiff60"},
+       MakeFibreBar,
+       MeasureFibreBar},
+      {"slab_trio",
+       "Figs. 14 and 15",
+       {"iso", "aniso", "impure", "shuffled", "turned"},
+       MakeSlabTrio,
+       MeasureSlabTrio},
+      {"branch",
+       "Figs. 7 and 13",
+       {"dry", "damp", "dry-iso", "damp-iso"},
+       MakeBranch,
+       MeasureBranch},
+      {"locality", "Fig. 5, sec. 5", {"without", "with"}, MakeLocality, MeasureLocality},
+      {"column", "sec. 7.7.2", {"sheet", "plain"}, MakeColumn, MeasureColumn},
   };
   return kKinds;
 }

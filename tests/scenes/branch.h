@@ -1,0 +1,19 @@
+#ifndef CLEAVE_TESTS_SCENES_BRANCH_H_
+#define CLEAVE_TESTS_SCENES_BRANCH_H_
+
+#include "tests/scenes/demonstration.h"
+
+namespace cleave {
+
+// A tapered branch with the stubs of two twigs, fibres along it, its foot pinned, its tip bent
+// aside and pulled. Variants: "dry"; "damp", with water, which degrades, on all nodes; "dry-iso"
+// and "damp-iso", without fibres.
+absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
+
+// splinter_length: axial extent of a fracture over the diameter, the mean over fractures by area.
+Metrics MeasureBranch(const Demonstration& demonstration, const Incidence& incidence,
+                      const Run& run);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_SCENES_BRANCH_H_

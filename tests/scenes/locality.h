@@ -1,0 +1,29 @@
+#ifndef CLEAVE_TESTS_SCENES_LOCALITY_H_
+#define CLEAVE_TESTS_SCENES_LOCALITY_H_
+
+#include "tests/scenes/demonstration.h"
+
+namespace cleave {
+
+// Two slabs side by side in one mesh, pulled alike. Variants: "without" impurities; "with" one, on
+// a single node in the middle of the first slab.
+absl::StatusOr<Demonstration> MakeLocality(const Setting& setting);
+Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& incidence,
+                        const Run& run);
+
+// How two runs that differ by one node's potency part.
+struct LocalityOfChange {
+  int64_t first_difference = -1;  // frame; before it all positions and broken edges are the same
+  int64_t new_broken_edges = 0;   // in that frame, by the impurity
+  bool broken_edges_are_the_nodes_own = false;
+  // Changes of velocity in that frame, m/s.
+  double largest = 0;
+  double largest_elsewhere = 0;         // in the body that has no impurity
+  double share_within_three_rings = 0;  // of the sum of squares, of nodes three edges away or less
+};
+LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence& incidence,
+                             const Run& without, const Run& with);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_SCENES_LOCALITY_H_

@@ -1,0 +1,28 @@
+#ifndef CLEAVE_TESTS_SCENES_SHAPES_H_
+#define CLEAVE_TESTS_SCENES_SHAPES_H_
+
+#include "absl/status/statusor.h"
+#include "core/base/vec3.h"
+#include "core/mesh/procedural_shapes.h"
+#include "core/mesh/tet_mesh.h"
+
+// Bodies that Cleave does not mesh by itself: its cylinders, warped. All are meshed in
+// either layout and pass CheckAndOrientMesh without an error; lengths in metres.
+
+namespace cleave {
+
+// A tapered stick along z from the origin, with the stubs of two twigs.
+struct BranchShape {
+  double length = 0.6;
+  double foot_radius = 0.05;
+  double tip_radius = 0.036;
+  double stub_height = 0.03;  // beyond the bark
+};
+absl::StatusOr<TetMesh> Branch(const BranchShape& shape, const MeshResolution& resolution);
+
+// A column along z from the origin, 1 m high and 0.1 m in radius, with a base and a capital.
+absl::StatusOr<TetMesh> Column(const MeshResolution& resolution);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_SCENES_SHAPES_H_

@@ -1,0 +1,102 @@
+#include "tests/scenes/slab_trio.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/status.h"
+#include "core/mesh/procedural.h"
+#include "tests/metrics/crack_surface.h"
+#include "tests/metrics/strain.h"
+#include "tests/scenes/scene_parts.h"
+
+namespace cleave {
+namespace {
+
+constexpr double kLength = 1;        // m
+constexpr double kWidth = 0.5;       // m
+constexpr double kThickness = 0.05;  // m
+constexpr double kClamp = 0.08;      // m, the end that is pulled
+constexpr double kFibreAngle = 35;   // degrees from the pull
+constexpr double kPullSpeed = 1;     // m/s
+constexpr double kSeconds = 0.4;
+constexpr int64_t kFrames = 40;
+
+// A band that leans across the slab, and a row of pockets beyond it.
+bool InMap(const Vec3& x, double cell_size) {
+  const double half_band = std::max(0.03, 0.8 * cell_size);
+  const double band = (x[0] - 0.36) * std::cos(0.35) + x[1] * std::sin(0.35);
+  if (std::abs(band) <= half_band) return true;
+  for (const double y : {-0.2, -0.067, 0.067, 0.2}) {
+    if (std::hypot(x[0] - 0.7, x[1] - y) <= std::max(0.05, 1.2 * cell_size)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+absl::StatusOr<Demonstration> MakeSlabTrio(const Setting& setting) {
+  const std::string kind = setting.variant.substr(0, setting.variant.find('-'));
+  Demonstration made;
+  made.cell_size = 0.0172 * setting.coarseness;
+  BoxMesh box;
+  box.origin = {0, -kWidth / 2, -kThickness / 2};
+  box.size = {kLength, kWidth, kThickness};
+  box.resolution = {setting.layout, made.cell_size, 0.2, setting.seed};
+  CLEAVE_ASSIGN_OR_RETURN(made.mesh, BuildMesh(box));
+  made.fibres.assign(made.mesh.tets.size(), InPlane(kFibreAngle));
+  made.rest_length = kLength - kClamp;
+
+  Scene& scene = made.scene;
+  scene.name = kind;
+  scene.seed = setting.seed;
+  Material material;
+  material.name = "slab";
+  material.youngs_modulus = 1e6;
+  material.poisson_ratio = 0.35;
+  material.density = 1000;
+  material.tensile_strength = 1e5;
+  if (kind == "aniso" || kind == "turned") {
+    FibreFamily family;
+    family.stiffness = 3e6;
+    family.direction = ConstantDirection{InPlane(kind == "aniso" ? kFibreAngle : kFibreAngle + 90)};
+    family.strength_ratio = 3;
+    material.fibres.push_back(family);
+  }
+  scene.materials.push_back(material);
+
+  Impurities impurities;
+  impurities.noise = 0.05;
+  made.in_map = NodeFlags(made.mesh, [&](const Vec3& x) { return InMap(x, made.cell_size); });
+  if (kind == "impure" || kind == "shuffled") {
+    impurities.potency = 3;
+    impurities.map = MapOf(kind == "impure" ? made.in_map : Shuffled(made.in_map, setting.seed));
+  }
+  scene.impurities = impurities;
+
+  made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
+  made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kLength - kClamp; });
+  AddNodeSet(scene, "hinge", made.grip);
+  AddNodeSet(scene, "pulled", made.pulled);
+  AddMotion(scene, "hinge", {true, false, true});
+  made.pull_motion = AddMotion(scene, "pulled", {true, true, true},
+                               PullBy({kPullSpeed * kSeconds, 0, 0}, kSeconds));
+  SetPace(scene, kSeconds, kFrames);
+  made.frames_after_separation = 6;
+  return made;
+}
+
+Metrics MeasureSlabTrio(const Demonstration& demonstration, const Incidence& incidence,
+                        const Run& run) {
+  Metrics metrics;
+  const auto crack = CrackOfPieces(demonstration.mesh, incidence, run.frames.back().broken_edges);
+  if (crack.empty()) return metrics;
+  metrics["center_from_pulled"] = 1 - CrackCenter(crack)[0] / kLength;
+  metrics["trace_thickness"] = ExtentAlong(crack, {1, 0, 0}, 0.05).length() / kLength;
+  metrics["trace_angle"] =
+      TraceAngle(crack, {0, 0, 1}, 3 * demonstration.cell_size, InPlane(kFibreAngle));
+  metrics["strain_to_crack"] =
+      StrainToFirstCrack(demonstration.mesh, incidence, run.frames) / demonstration.cell_size;
+  return metrics;
+}
+
+}  // namespace cleave
