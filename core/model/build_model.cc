@@ -15,6 +15,7 @@
 #include "core/mesh/tet_geometry.h"
 #include "core/model/collider_term.h"
 #include "core/model/elastic_term.h"
+#include "core/model/fragment_contact.h"
 #include "core/model/impurities.h"
 #include "core/model/load_terms.h"
 #include "core/model/weakened_edges.h"
@@ -321,6 +322,12 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
         scene, NodeStiffness(scene.materials, material_of, model), model);
     model.colliders = term.get();
     model.node_terms.push_back(std::move(term));
+  }
+
+  // Contact between pieces.
+  if (scene.contact) {
+    model.node_terms.push_back(std::make_unique<FragmentContact>(
+        *scene.contact, NodeStiffness(scene.materials, material_of, model), model));
   }
 
   // Fracture, where something can break.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/contact/friction_spring.h"
+
 namespace cleave {
 namespace {
 
@@ -17,6 +19,11 @@ constexpr double kPositionRounding = 2e-16;
 Eigen::Vector3d ToEigen(const Vec3& v) { return {v[0], v[1], v[2]}; }
 Eigen::Vector3d ToEigen(Double4 v) { return {v[0], v[1], v[2]}; }
 Double4 ToLanes(const Eigen::Vector3d& v) { return Double4{v[0], v[1], v[2], 0}; }
+
+// The part of a vector across a unit normal.
+Eigen::Vector3d Across(const Eigen::Vector3d& v, const Eigen::Vector3d& normal) {
+  return v - normal * normal.dot(v);
+}
 
 void Split(const Eigen::Matrix3d& matrix, Double4 columns[3]) {
   for (int k = 0; k < 3; ++k) columns[k] = ToLanes(matrix.col(k));
@@ -232,13 +239,10 @@ double ColliderTerm::AddForces(const NodalVector& displacements, NodalVector& fo
       }
       if (candidate->friction_cap > 0) {
         const Vector anchor = pose.Apply(candidate->anchor);
-        const Vector& normal = candidate->normal;
-        const Vector stretch = (point - anchor) - normal * normal.dot(point - anchor);
-        const double length = stretch.norm();
-        const double k = candidate->stiffness, cap = candidate->friction_cap;
-        const bool sticks = k * length <= cap;
-        energy += sticks ? 0.5 * k * length * length : cap * (length - 0.5 * cap / k);
-        const Vector drag = -(sticks ? k : cap / length) * stretch;
+        const FrictionSpring friction{candidate->stiffness, candidate->friction_cap};
+        const Vector stretch = Across(point - anchor, candidate->normal);
+        energy += friction.Energy(stretch.norm());
+        const Vector drag = friction.Force(stretch);
         push += drag;
         torque -= (anchor - pose.to).cross(drag);
       }
@@ -294,14 +298,9 @@ void ColliderTerm::AddStiffness(const NodalVector& displacements, NodeCouplings&
       }
       if (candidate->friction_cap > 0) {
         const Vector anchor = pose.Apply(candidate->anchor);
-        const Matrix plane = Matrix::Identity() - candidate->normal * candidate->normal.transpose();
-        const Vector stretch = plane * (point - anchor);
-        const double length = stretch.norm();
-        const double k = candidate->stiffness, cap = candidate->friction_cap;
-        Matrix spring = k * plane;
-        if (k * length > cap) {
-          spring = cap / length * (plane - stretch * stretch.transpose() / (length * length));
-        }
+        const FrictionSpring friction{candidate->stiffness, candidate->friction_cap};
+        const Matrix spring =
+            friction.Stiffness(Across(point - anchor, candidate->normal), candidate->normal);
         AddSpring(*candidate, pose, spring, anchor - pose.to, couplings);
       }
     }
@@ -341,19 +340,13 @@ NodeTermWork ColliderTerm::EndStep(const State& state) {
     Vector push = press.force * normal;
     Vector kept = Vector::Zero();  // stretch of the friction spring
     if (candidate.friction_cap > 0) {
-      const Vector across = point - pose.Apply(candidate.anchor);
-      const Vector stretch = across - candidate.normal * candidate.normal.dot(across);
-      const double length = stretch.norm();
-      const double k = candidate.stiffness, cap = candidate.friction_cap;
-      const bool sticks = k * length <= cap;
-      const double held = sticks ? 0.5 * k * length * length : cap * (length - 0.5 * cap / k);
-      push -= (sticks ? k : cap / length) * stretch;
-      const double longest = std::min(cap, part.friction * press.force) / k;
-      kept = stretch * (length > longest ? longest / length : 1);
-      kept -= normal * normal.dot(kept);
-      const double stored = 0.5 * k * kept.squaredNorm();
+      const FrictionSpring friction{candidate.stiffness, candidate.friction_cap};
+      const Vector stretch = Across(point - pose.Apply(candidate.anchor), candidate.normal);
+      push += friction.Force(stretch);
+      kept = Across(friction.Kept(stretch, part.friction * press.force), normal);
+      const double stored = 0.5 * friction.stiffness * kept.squaredNorm();
       work.stored_energy += stored;
-      work.dissipation += held - stored;
+      work.dissipation += friction.Energy(stretch.norm()) - stored;
     }
     if (!part.body) {
       work.external_work += push.dot(pose.Apply(local) - start_poses_[c].Apply(local));

@@ -13,6 +13,7 @@
 #include "core/model/collider_term.h"
 #include "core/model/edge_projected_term.h"
 #include "core/model/elastic_term.h"
+#include "core/model/fragment_contact.h"
 #include "core/model/load_terms.h"
 #include "core/model/nodal_vector.h"
 
@@ -108,6 +109,8 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   for (const Load& load : scene.loads) add_release(load.release);
   if (release_bytes > 0) add("releases", release_bytes);
   const bool breaks = CanBreak(scene);
+  if (scene.contact)
+    add("contact", FragmentContact::BytesOf(nodes, edges) + (uniform ? 1 : nodes) * kDouble);
   bool directional = false;
   for (const Material& material : scene.materials) {
     for (const FibreFamily& family : material.fibres)

@@ -35,6 +35,13 @@ class NodeTerm {
   // have changed since the last call.
   virtual void SetDamage(std::span<const double> factors) { (void)factors; }
 
+  // These edges are broken before the first step.
+  virtual void StartBroken(std::span<const int32_t> edges) { (void)edges; }
+  // These edges broke in the step that began, at these displacements. BeginStep takes that back.
+  virtual void EdgesBroke(std::span<const int32_t> edges, const NodalVector& displacements) {
+    (void)edges;
+    (void)displacements;
+  }
   // The longest part (s) of a step from `start` to `end` that this term can follow, with the body's
   // state at the start; a longer step is cut into equal parts.
   virtual double LongestPart(double start, double end, const State& state) const {

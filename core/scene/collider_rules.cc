@@ -136,6 +136,14 @@ void CheckBody(const std::string& field, const Collider& collider, Faults& fault
 
 }  // namespace
 
+void CheckContact(const Scene& scene, Faults& faults) {
+  if (!scene.contact.has_value()) return;
+  Checker check(faults);
+  check.Within("contact.stiffness", scene.contact->stiffness, limits::kMinContactStiffness,
+               limits::kMaxContactStiffness);
+  check.Within("contact.friction", scene.contact->friction, 0, limits::kMaxFriction);
+}
+
 void CheckColliders(const Scene& scene, Faults& faults) {
   Checker check(faults);
   if (!check.List("colliders", scene.colliders.size(), limits::kMaxColliders)) return;

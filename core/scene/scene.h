@@ -309,6 +309,12 @@ struct Collider {
   double margin = 0;  // m, that nodes keep from the shape
 };
 
+// Contact between pieces that have separated (method note, section 9).
+struct Contact {
+  double stiffness = 5;  // as of a collider
+  double friction = 0;   // Coulomb's coefficient
+};
+
 // Which stress breaks edges of a material with fibres.
 enum class FractureStress {
   kMatrix,  // that of the isotropic solid, so that cracks follow the fibres
@@ -395,6 +401,7 @@ struct Scene {
   std::vector<Weakening> weakenings;  // later ones win
   std::optional<Impurities> impurities;
   std::vector<Collider> colliders;
+  std::optional<Contact> contact;  // absent: pieces pass through each other
   Timing timing;
   Quality quality;
   Output output;

@@ -322,6 +322,7 @@ Faults ValidateScene(const Scene& scene) {
   CheckWeakenings(scene, names, faults, check);
   if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults, check);
   CheckColliders(scene, faults);
+  CheckContact(scene, faults);
   CheckSettings(scene, faults, check);
   return faults;
 }

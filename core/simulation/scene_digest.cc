@@ -243,6 +243,11 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   if (scene.impurities) PutImpurities(*scene.impurities, out);
   out.Put<uint64_t>(scene.colliders.size());
   for (const Collider& collider : scene.colliders) PutCollider(collider, out);
+  out.Put<uint8_t>(scene.contact.has_value());
+  if (scene.contact.has_value()) {
+    out.Put(scene.contact->stiffness);
+    out.Put(scene.contact->friction);
+  }
   out.Put(scene.timing.frames_per_second);
   out.Put(scene.timing.steps_per_frame);
   out.Put(scene.quality.newton_iterations);

@@ -75,7 +75,8 @@ int64_t Breaking::BreakPass(const NodalVector& displacements) {
   for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
   if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   stresses_are_last_ = result.broken_edges.empty();
-  return static_cast<int64_t>(result.broken_edges.size());
+  newly_broken_ = result.broken_edges;
+  return static_cast<int64_t>(newly_broken_.size());
 }
 
 void Breaking::EndStep(const NodalVector& displacements) {

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ class Breaking {
 
   // To be called when a step has ended at these displacements (m) and will not be rolled back.
   void EndStep(const NodalVector& displacements);
+
+  // The edges that the last pass broke, ascending; until the next.
+  std::span<const int32_t> newly_broken() const { return newly_broken_; }
 
   // Keeps the present state, for RollBack to return to.
   void Mark();
@@ -75,6 +79,7 @@ class Breaking {
   std::vector<Eigen::Matrix3d> stresses_;  // Pa
   std::vector<double> edge_stresses_;      // Pa, where the materials tire
   bool stresses_are_last_ = false;         // those of the last solve
+  std::span<const int32_t> newly_broken_;
   std::string mark_;
   int64_t marked_broken_edges_ = 0;
 };

@@ -24,6 +24,9 @@ Stepper::Stepper(const Model& model)
       displacements_(model.masses.size()) {
   if (model.fracture) breaking_.emplace(model);
   if (!model.releases.empty()) releases_.emplace(model, breaking());
+  if (!breaking_ || breaking_->broken_edge_count() == 0) return;
+  const std::vector<int32_t> edges = breaking_->fracture().BrokenEdges();
+  for (const auto& term : model.node_terms) term->StartBroken(edges);
 }
 
 absl::Status Stepper::Step(double start, double end, const StopFlag& stop, State& state,
@@ -142,6 +145,8 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
       ScopedTimer timer(report.fracture_seconds);
       if (breaking_->BreakPass(displacements_) == 0) return absl::OkStatus();
     }
+    for (const auto& term : model_.node_terms)
+      term->EdgesBroke(breaking_->newly_broken(), displacements_);
     ++report.break_passes;
     const double before = newton_.elastic_energy();
     CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));

@@ -517,6 +517,11 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
     scene.weakenings.push_back(
         convert.OneWeakening(absl::StrCat("weakenings[", i, "]"), message.weakenings(i)));
   }
+  if (message.has_contact()) {
+    Contact& contact = scene.contact.emplace();
+    if (message.contact().has_stiffness()) contact.stiffness = message.contact().stiffness();
+    contact.friction = message.contact().friction();
+  }
   for (int i = 0; i < message.colliders_size(); ++i) {
     scene.colliders.push_back(
         convert.OneCollider(absl::StrCat("colliders[", i, "]"), message.colliders(i)));

@@ -354,6 +354,10 @@ v1::Scene MessageFromScene(const Scene& scene) {
     std::visit(WriteEdges{to}, weakening.edges);
     to->set_factor(weakening.factor);
   }
+  if (scene.contact.has_value()) {
+    message.mutable_contact()->set_stiffness(scene.contact->stiffness);
+    message.mutable_contact()->set_friction(scene.contact->friction);
+  }
   for (const Collider& collider : scene.colliders) WriteCollider(collider, message.add_colliders());
   message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
                                                   ? v1::STRESS_AGGREGATION_MAX

@@ -78,6 +78,9 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.colliders.emplace_back().shape = PlaneShape{};
   expect_adds(scene, "colliders");
   scene = minimal;
+  scene.contact.emplace();
+  expect_adds(scene, "contact");
+  scene = minimal;
   scene.materials[0].tensile_strength = 1e5;
   expect_adds(scene, "fracture");
   scene = minimal;

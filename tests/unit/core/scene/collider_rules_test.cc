@@ -116,6 +116,16 @@ TEST(ColliderRules, TrianglesOfNoAreaOrUnknownVerticesAreNamed) {
   EXPECT_THAT(faults.ToStatus().message(), HasSubstr("triangles[2]: 9 is outside [0, 3]"));
 }
 
+TEST(ContactRules, NameEachFieldThatIsOutOfRange) {
+  Scene scene;
+  scene.contact = Contact{0, -1};
+  Faults faults;
+  CheckContact(scene, faults);
+  EXPECT_THAT(faults.ToStatus().message(),
+              HasSubstr("contact.stiffness: 0 is outside [0.01, 1000]"));
+  EXPECT_THAT(faults.ToStatus().message(), HasSubstr("contact.friction: -1 is outside [0, 10]"));
+}
+
 TEST(ColliderRules, TwoCollidersOfOneNameAreRefused) {
   Scene scene = WithCollider(PlaneShape{});
   scene.colliders[0].name = "floor";

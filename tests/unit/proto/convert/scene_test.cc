@@ -146,6 +146,7 @@ constexpr char kEveryField[] = R"pb(
   }
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
+  contact { stiffness: 3 friction: 0.6 }
   colliders {
     name: "floor"
     plane {

@@ -1,0 +1,43 @@
+#ifndef CLEAVE_CORE_CONTACT_FRICTION_SPRING_H_
+#define CLEAVE_CORE_CONTACT_FRICTION_SPRING_H_
+
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace cleave {
+
+// Coulomb friction as a spring (N/m) whose force ends at a cap (N): it sticks below and slips
+// there. A stretch (m) is what lies between two points across their common normal.
+struct FrictionSpring {
+  double stiffness;
+  double cap;
+
+  bool Sticks(double length) const { return stiffness * length <= cap; }
+  // J.
+  double Energy(double length) const {
+    return Sticks(length) ? 0.5 * stiffness * length * length
+                          : cap * (length - 0.5 * cap / stiffness);
+  }
+  // N, on the first point.
+  Eigen::Vector3d Force(const Eigen::Vector3d& stretch) const {
+    const double length = stretch.norm();
+    return -(Sticks(length) ? stiffness : cap / length) * stretch;
+  }
+  // N/m, in the plane across the unit normal; positive semidefinite.
+  Eigen::Matrix3d Stiffness(const Eigen::Vector3d& stretch, const Eigen::Vector3d& normal) const {
+    const Eigen::Matrix3d plane = Eigen::Matrix3d::Identity() - normal * normal.transpose();
+    const double length = stretch.norm();
+    if (Sticks(length)) return stiffness * plane;
+    return cap / length * (plane - stretch * stretch.transpose() / (length * length));
+  }
+  // The stretch that is left when what is beyond either cap has slipped away.
+  Eigen::Vector3d Kept(const Eigen::Vector3d& stretch, double next_cap) const {
+    const double length = stretch.norm();
+    const double longest = std::min(cap, next_cap) / stiffness;
+    return length > longest ? Eigen::Vector3d(longest / length * stretch) : stretch;
+  }
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_CONTACT_FRICTION_SPRING_H_
