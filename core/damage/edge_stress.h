@@ -20,6 +20,13 @@ struct EdgeDirections {
   // d^T P N, Pa per rest area, of a first Piola-Kirchhoff stress (method note, section 2): bounded
   // as a tet flattens, unchanged by rotation, and the force over the rest area in a pulled bar.
   double Project(const Eigen::Matrix3d& stress) const { return current.dot(stress * rest); }
+  // The same of dPsi/dF_e where F_p has turned and stretched the rest direction: stress per area of
+  // what flow has made of the rest shape, near true stress. Precondition: det F_p > 0.
+  double Project(const Eigen::Matrix3d& stress, const Eigen::Matrix3d& plastic) const {
+    const Eigen::Vector3d flowed = plastic * rest;
+    const double length = flowed.norm();
+    return length > 0 ? current.dot(stress * flowed) / length : 0;
+  }
 
  private:
   static Eigen::Vector3d Between(const std::array<int32_t, 2>& nodes,

@@ -49,6 +49,7 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
       pending_.push_back(edge);
     } else {
       min_threshold_ = std::min(min_threshold_, Weakest(edge));
+      min_kappa_ = std::min(min_kappa_, strengths_.kappa[edge]);
     }
   }
   BreakPending({}, {});
@@ -56,8 +57,9 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
 
 void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
   for (const int32_t edge : edges) {
-    if (broken_[static_cast<size_t>(edge)] == 0)
-      min_threshold_ = std::min(min_threshold_, Weakest(edge));
+    if (broken_[static_cast<size_t>(edge)] != 0) continue;
+    min_threshold_ = std::min(min_threshold_, Weakest(edge));
+    min_kappa_ = std::min(min_kappa_, strengths_.kappa[edge]);
   }
 }
 
@@ -74,31 +76,24 @@ double EdgeFracture::Weakest(int32_t edge) const {
   return left == 0 ? 0 : left * std::min(strengths_.tensile[edge], strengths_.compressive[edge]);
 }
 
-PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effective_stress) {
+PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effective_stress,
+                                   const PlasticTets* plastic) {
   PassResult result;
+  plastic_ = plastic;
   if (min_threshold_ == kUnbreakable) return result;
 
   // No edge of a tet sees more than the norm of its stress.
   const double stress_bound = WeighTets(positions, effective_stress);
-  if (stress_bound < min_threshold_) {
-    result.max_ratio = stress_bound / min_threshold_;
+  const double exhaustion_bound = plastic_ != nullptr ? WeighStrains() : 0;
+  if (stress_bound < min_threshold_ && exhaustion_bound < min_kappa_) {
+    result.max_ratio = std::max(stress_bound / min_threshold_, exhaustion_bound / min_kappa_);
     return result;
   }
-
-  const auto edges = static_cast<int64_t>(ratios_.size());
-  const int64_t blocks = (edges + kBlock - 1) / kBlock;
-  block_max_.resize(static_cast<size_t>(blocks));
-  ParallelFor(blocks, 1, [&](int64_t begin, int64_t end) {
-    for (int64_t block = begin; block < end; ++block) {
-      BlockMax max{0, -1};
-      for (int64_t edge = block * kBlock; edge < std::min(edges, (block + 1) * kBlock); ++edge) {
-        const double ratio = RatioOf(static_cast<int32_t>(edge), positions, effective_stress);
-        ratios_[static_cast<size_t>(edge)] = ratio;
-        if (ratio > max.value) max = {ratio, static_cast<int32_t>(edge)};
-      }
-      block_max_[static_cast<size_t>(block)] = max;
-    }
-  });
+  if (plastic_ != nullptr) {
+    SetRatios<true>(positions, effective_stress);
+  } else {
+    SetRatios<false>(positions, effective_stress);
+  }
   for (const BlockMax& max : block_max_) {
     if (max.value <= result.max_ratio) continue;
     result.max_ratio = max.value;
@@ -111,6 +106,37 @@ PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effec
   result.broken_edges = new_broken_;
   result.changed_tets = changed_;
   return result;
+}
+
+template <bool kPlastic>
+void EdgeFracture::SetRatios(std::span<const Vec3> positions, Stress effective_stress) {
+  const auto edges = static_cast<int64_t>(ratios_.size());
+  const int64_t blocks = (edges + kBlock - 1) / kBlock;
+  block_max_.resize(static_cast<size_t>(blocks));
+  ParallelFor(blocks, 1, [&](int64_t begin, int64_t end) {
+    for (int64_t block = begin; block < end; ++block) {
+      BlockMax max{0, -1};
+      for (int64_t edge = block * kBlock; edge < std::min(edges, (block + 1) * kBlock); ++edge) {
+        const double ratio =
+            RatioOf<kPlastic>(static_cast<int32_t>(edge), positions, effective_stress);
+        ratios_[static_cast<size_t>(edge)] = ratio;
+        if (ratio > max.value) max = {ratio, static_cast<int32_t>(edge)};
+      }
+      block_max_[static_cast<size_t>(block)] = max;
+    }
+  });
+}
+
+double EdgeFracture::WeighStrains() {
+  double largest = 0;
+  for (size_t tet = 0; tet < factors_.size(); ++tet) {
+    const int32_t record = plastic_->record_of[tet];
+    if (record < 0 || !(factors_[tet] > 0)) continue;
+    const double exhaustion = plastic_->tets[static_cast<size_t>(record)].exhaustion;
+    if (exhaustion >= min_kappa_ && loads_[tet] == kUpright) loads_[tet] = kHot;
+    largest = std::max(largest, exhaustion);
+  }
+  return largest;
 }
 
 double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective_stress) {
@@ -137,6 +163,22 @@ double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective
   return std::sqrt(max_squared);
 }
 
+template <bool kPlastic>
+double EdgeFracture::Project(const EdgeDirections& directions, size_t tet,
+                             Stress effective_stress) const {
+  if constexpr (kPlastic) {
+    const int32_t record = plastic_->record_of[tet];
+    if (record >= 0)
+      return directions.Project(effective_stress[tet],
+                                plastic_->tets[static_cast<size_t>(record)].deformation);
+  }
+  return directions.Project(effective_stress[tet]);
+}
+
+template double EdgeFracture::Project<true>(const EdgeDirections&, size_t, Stress) const;
+template double EdgeFracture::Project<false>(const EdgeDirections&, size_t, Stress) const;
+
+template <bool kPlastic>
 EdgeFracture::EdgeLoad EdgeFracture::LoadOf(int32_t edge, std::span<const Vec3> positions,
                                             Stress effective_stress) const {
   const EdgeDirections directions(incidence_.edges[static_cast<size_t>(edge)], positions,
@@ -145,20 +187,31 @@ EdgeFracture::EdgeLoad EdgeFracture::LoadOf(int32_t edge, std::span<const Vec3> 
   double volume = 0;
   double max = -kUnbreakable;
   double min = kUnbreakable;
+  double weighted_exhaustion = 0;
+  double max_exhaustion = 0;
   for (const int32_t tet : incidence_.edge_tets[edge]) {
     const auto t = static_cast<size_t>(tet);
     if (!(factors_[t] > 0)) continue;
     volume += rest_volumes_[t];
-    const double stress = loads_[t] == kNone ? 0 : directions.Project(effective_stress[t]);
+    const double stress =
+        loads_[t] == kNone ? 0 : Project<kPlastic>(directions, t, effective_stress);
     weighted += rest_volumes_[t] * stress;
     max = std::max(max, stress);
     min = std::min(min, stress);
+    if constexpr (kPlastic) {
+      const int32_t record = plastic_->record_of[t];
+      if (record < 0) continue;
+      const double exhaustion = plastic_->tets[static_cast<size_t>(record)].exhaustion;
+      weighted_exhaustion += rest_volumes_[t] * exhaustion;
+      max_exhaustion = std::max(max_exhaustion, exhaustion);
+    }
   }
   if (!(volume > 0)) return {0, 0};
-  if (settings_.aggregation == StressAggregation::kMax) return {max, -min};
-  return {weighted / volume, -weighted / volume};
+  if (settings_.aggregation == StressAggregation::kMax) return {max, -min, max_exhaustion};
+  return {weighted / volume, -weighted / volume, weighted_exhaustion / volume};
 }
 
+template <bool kPlastic>
 double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
                              Stress effective_stress) const {
   if (broken_[static_cast<size_t>(edge)] != 0) return 0;
@@ -170,22 +223,33 @@ double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
     return loads_[static_cast<size_t>(tet)] == kHot;
   });
   if (!hot) return 0;
-  const EdgeLoad load = LoadOf(edge, positions, effective_stress);
+  const EdgeLoad load = LoadOf<kPlastic>(edge, positions, effective_stress);
   double ratio = 0;
   if (load.tension > 0) ratio = load.tension / (strengths_.tensile[edge] * left);
   if (load.compression > 0)
     ratio = std::max(ratio, load.compression / (strengths_.compressive[edge] * left));
+  if constexpr (kPlastic) {
+    if (strengths_.tensile[edge] < kUnbreakable)
+      ratio = std::max(ratio, load.exhaustion / strengths_.kappa[edge]);
+  }
   return ratio;
 }
 
 void EdgeFracture::EdgeStresses(std::span<const Vec3> positions, Stress effective_stress,
-                                std::span<double> stresses) {
+                                const PlasticTets* plastic, std::span<double> stresses) {
+  plastic_ = plastic;
   WeighTets(positions, effective_stress);
   ParallelFor(static_cast<int64_t>(stresses.size()), kBlock, [&](int64_t begin, int64_t end) {
     for (int64_t edge = begin; edge < end; ++edge) {
       const bool broken = broken_[static_cast<size_t>(edge)] != 0;
-      stresses[static_cast<size_t>(edge)] =
-          broken ? 0 : LoadOf(static_cast<int32_t>(edge), positions, effective_stress).tension;
+      if (broken) {
+        stresses[static_cast<size_t>(edge)] = 0;
+        continue;
+      }
+      const auto e = static_cast<int32_t>(edge);
+      const EdgeLoad load = plastic_ != nullptr ? LoadOf<true>(e, positions, effective_stress)
+                                                : LoadOf<false>(e, positions, effective_stress);
+      stresses[static_cast<size_t>(edge)] = load.tension;
     }
   });
 }

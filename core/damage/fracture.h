@@ -12,6 +12,8 @@
 #include "core/base/bytes.h"
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
+#include "core/damage/edge_stress.h"
+#include "core/damage/plastic_tet.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
@@ -74,6 +76,10 @@ struct PassResult {
 // share of its stress that the unbroken ones carry, frozen from then on; it dies once its vertices
 // are separated.
 //
+// In tets that have flowed plastically P is dPsi/dF_e and N turns with F_p. There an edge fails too
+// when its plastic strain over that at failure, taken over its tets as stress is, reaches kappa;
+// not where its threshold is infinite.
+//
 // Damage factors never rise and broken edges never mend. A live edge is an unbroken one: the orphan
 // rule breaks an edge when its last live tet dies.
 //
@@ -92,8 +98,10 @@ class EdgeFracture {
   // then applies separation, orphans and hinges until nothing changes. Call it after each solve of
   // a step until no edge breaks. `positions` (m) has a node each, `effective_stress` (Pa, without
   // the damage factor) a tet each; stresses of dead tets are not read. NaN breaks nothing.
+  // `plastic` names the ductile tets, where there are any.
   PassResult BreakPass(std::span<const Vec3> positions,
-                       std::span<const Eigen::Matrix3d> effective_stress);
+                       std::span<const Eigen::Matrix3d> effective_stress,
+                       const PlasticTets* plastic = nullptr);
 
   // To be called when the strengths of these edges have fallen; they count from the next pass on.
   void LowerThresholds(std::span<const int32_t> edges);
@@ -103,7 +111,8 @@ class EdgeFracture {
   // The aggregated stress of every edge, Pa, negative in compression; where the largest counts,
   // that of tension. 0 for broken edges. `stresses` has an edge each.
   void EdgeStresses(std::span<const Vec3> positions,
-                    std::span<const Eigen::Matrix3d> effective_stress, std::span<double> stresses);
+                    std::span<const Eigen::Matrix3d> effective_stress, const PlasticTets* plastic,
+                    std::span<double> stresses);
 
   // Share of its stiffness that each tet has left: 1 intact, 0 dead. Scales energy, force, Hessian.
   // Edge-projected tets have 1 until they die.
@@ -128,21 +137,31 @@ class EdgeFracture {
   // but where the largest stress of its tets counts.
   struct EdgeLoad {
     double tension, compression;
+    double exhaustion = 0;  // of ductility
   };
   // What a tet's stress counts for.
   enum TetLoad : uint8_t {
     kNone,     // dead, or J <= 0
     kUpright,  // live
-    kHot,      // live, and its stress reaches the smallest threshold: its edges may fail
+    kHot,      // live, and its stress or strain reaches the smallest threshold: edges may fail
   };
 
   // The smallest strength of an edge, Pa.
   double Weakest(int32_t edge) const;
   // Sets `loads_`; returns the largest Frobenius norm of an upright tet's stress.
   double WeighTets(std::span<const Vec3> positions, Stress effective_stress);
+  // Makes ductile tets hot that may fail by strain; returns the largest exhaustion of a live one.
+  double WeighStrains();
+  // kPlastic: whether there are ductile tets.
+  template <bool kPlastic>
+  double Project(const EdgeDirections& directions, size_t tet, Stress effective_stress) const;
+  template <bool kPlastic>
   EdgeLoad LoadOf(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
   // The failure ratio of an edge.
+  template <bool kPlastic>
   double RatioOf(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
+  template <bool kPlastic>
+  void SetRatios(std::span<const Vec3> positions, Stress effective_stress);
   void CollectFailing();
   // Breaks the edges in `pending_`, weakens their tets and applies the rules to a fixed point.
   void BreakPending(std::span<const Vec3> positions, Stress effective_stress);
@@ -158,6 +177,7 @@ class EdgeFracture {
   const EdgeStrengths strengths_;
   const FractureSettings settings_;
   double min_threshold_ = 0;          // Pa, at most the smallest threshold
+  double min_kappa_ = kFullStrength;  // at most the smallest of an edge that may break
   std::vector<double> rest_volumes_;  // m^3, a tet each
   std::vector<uint8_t> broken_;       // an edge each
   std::vector<EdgeMask> masks_;       // a tet each
@@ -168,6 +188,7 @@ class EdgeFracture {
   bool components_fresh_ = false;
 
   // Scratch of a pass.
+  const PlasticTets* plastic_ = nullptr;
   std::vector<TetLoad> loads_;  // a tet each
   std::vector<double> ratios_;  // an edge each
   struct BlockMax {

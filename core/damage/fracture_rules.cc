@@ -102,7 +102,9 @@ double EdgeFracture::UnbrokenShare(int32_t tet, std::span<const Vec3> positions,
     if (loads_[t] == kNone) continue;
     const auto edge = static_cast<size_t>(incidence_.tet_edges[t][k]);
     const EdgeDirections directions(incidence_.edges[edge], positions, mesh_.rest_positions);
-    const double stress = std::abs(directions.Project(effective_stress[t]));
+    const double stress =
+        std::abs(plastic_ != nullptr ? Project<true>(directions, t, effective_stress)
+                                     : Project<false>(directions, t, effective_stress));
     all += stress;
     if (is_unbroken) unbroken += stress;
   }

@@ -32,7 +32,7 @@ template <typename T>
 struct FlowRule {
   T yield_stress;  // Pa, > 0
   T hardening;     // Pa per equivalent plastic strain, >= 0
-  T retained;      // share of the overstress that outlives the step, [0, 1)
+  T relaxation;    // flow_rate dt: a share exp(-relaxation) of the overstress outlives the step
 };
 
 // What four tets do; in lanes that do not flow all is 0.
@@ -147,7 +147,8 @@ PlasticReturn ReturnToYield(const Matrix3<Double4>& g, const LameConstants<Doubl
     const Int64x4 met = below & (excess > -1e-2 * kYieldRounding * yield);
     high = met ? low : high;
   }
-  const Double4 r = low + (1.0 - low) * rule.retained;
+  const Double4 retained = 1.0 + plasticity_internal::Expm1(-rule.relaxation);
+  const Double4 r = low + (1.0 - low) * retained;
   Double4 stretch[3];  // exp((r - 1) e) - 1
   for (int k = 0; k < 3; ++k) stretch[k] = plasticity_internal::Expm1((r - 1.0) * e[k]);
   for (int i = 0; i < 3; ++i) {

@@ -18,6 +18,7 @@
 #include "core/model/fragment_contact.h"
 #include "core/model/impurities.h"
 #include "core/model/load_terms.h"
+#include "core/model/plastic_term.h"
 #include "core/model/weakened_edges.h"
 #include "core/scene/selection.h"
 
@@ -62,10 +63,13 @@ size_t StiffFamilies(const Material& material) {
 struct ElasticKind {
   ElasticLaw law;
   size_t families;  // of fibres
+  bool ductile;
   auto operator<=>(const ElasticKind&) const = default;
 };
 
-ElasticKind KindOf(const Material& material) { return {material.law, StiffFamilies(material)}; }
+ElasticKind KindOf(const Material& material) {
+  return {material.law, StiffFamilies(material), material.plasticity.has_value()};
+}
 
 // The kinds of the materials, each once.
 std::set<ElasticKind> KindsOf(const std::vector<Material>& materials) {
@@ -97,6 +101,20 @@ std::vector<LameConstants<double>> LameOf(const std::vector<Material>& materials
   of_tet.reserve(tets.size());
   for (const int32_t tet : tets)
     of_tet.push_back(of_material[static_cast<size_t>(material_of[static_cast<size_t>(tet)])]);
+  return of_tet;
+}
+
+// Yielding of ductile tets, as LameOf.
+std::vector<Plasticity> PlasticityOf(const std::vector<Material>& materials,
+                                     const std::vector<int32_t>& material_of,
+                                     const std::vector<int32_t>& tets) {
+  if (materials.size() == 1) return {*materials[0].plasticity};
+  std::vector<Plasticity> of_tet;
+  of_tet.reserve(tets.size());
+  for (const int32_t tet : tets) {
+    const auto material = static_cast<size_t>(material_of[static_cast<size_t>(tet)]);
+    of_tet.push_back(*materials[material].plasticity);
+  }
   return of_tet;
 }
 
@@ -269,7 +287,8 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       model.masses[static_cast<size_t>(node)] += density * volume / 4;
   }
 
-  // Elasticity and fibres, a term for every law and number of families.
+  // Elasticity, fibres and plasticity, a term for every law, number of families and whether it
+  // flows.
   const std::vector<MaterialFibres> fibres =
       FibresOf(scene.materials, material_of, mesh, model.order);
   for (const ElasticKind& kind : KindsOf(scene.materials)) {
@@ -281,7 +300,16 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     for (size_t k = 0; k < kind.families; ++k) {
       part.fibres.push_back(StiffFamily(scene.materials, material_of, fibres, part.tets, k));
     }
+    if (kind.ductile) part.plasticity = PlasticityOf(scene.materials, material_of, part.tets);
     if (part.tets.size() == material_of.size()) part.tets.clear();  // all of the mesh
+    if (kind.ductile) {
+      std::unique_ptr<PlasticTerm> term =
+          MakePlasticTerm(scene.quality.precision, *model.mesh, *model.incidence, std::move(part),
+                          scene.fracture.stress);
+      model.plastic_terms.push_back(term.get());
+      model.tet_terms.push_back(std::move(term));
+      continue;
+    }
     model.tet_terms.push_back(MakeElasticTerm(scene.quality.precision, *model.mesh,
                                               *model.incidence, std::move(part),
                                               scene.fracture.stress));

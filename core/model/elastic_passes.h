@@ -36,6 +36,8 @@ struct Deformation {
 // from the rest shape.
 template <typename T>
 struct RestShape {
+  using Term = TetTerm;  // what a term with this shape is
+
   Deformation<T> DeformationOf(int64_t /*b*/, const Matrix3<T>& rest_gradient,
                                const Matrix3<T>& moves) const {
     return {rest_gradient, DisplacementGradient(moves, rest_gradient)};
@@ -48,7 +50,7 @@ struct RestShape {
 // gathers, evaluates all of these and scatters once.
 template <typename T, typename Law, template <typename> typename Fibres,
           template <typename> typename Shape>
-class ElasticTerm final : public TetTerm {
+class ElasticTerm : public Shape<T>::Term {
  public:
   ElasticTerm(const TetMesh& mesh, const Incidence& incidence, ElasticPart part,
               FractureStress stress, Shape<T> shape)
@@ -149,22 +151,7 @@ class ElasticTerm final : public TetTerm {
 
   void AddEffectiveStress(const NodalVector& displacements,
                           std::span<Eigen::Matrix3d> stresses) const override {
-    ForEachBatch(tets_, [&](int64_t begin, int64_t end) {
-      for (int64_t b = begin; b < end; ++b) {
-        const Matrix3<T> g = DeformationOf(b, displacements).g;
-        Matrix3<T> stress = Law::Stress(g, Law::KinematicsOf(g), lame(b));
-        if constexpr (Fibres<T>::kPresent) {
-          if (fibres_break_) fibres_.AddStress(b, g, stress);
-        }
-        const int lanes = tets_.lanes(b);
-        for (int lane = 0; lane < lanes; ++lane) {
-          Eigen::Matrix3d& target =
-              stresses[static_cast<size_t>(tets_.tet_at(b * TetBatches<T>::kLanes + lane))];
-          for (int k = 0; k < 9; ++k)
-            target(k / 3, k % 3) += stress_unit_ * double{stress(k / 3, k % 3)[lane]};
-        }
-      }
-    });
+    AddStressAt([&](int64_t b) { return DeformationOf(b, displacements).g; }, stresses);
   }
 
   void SetDamageFactor(int64_t tet, double factor) override {
@@ -180,15 +167,9 @@ class ElasticTerm final : public TetTerm {
     if (place < 0) return 0;
     const int64_t b = place / TetBatches<T>::kLanes;
     const Matrix3<T> g = DeformationOf(b, displacements).g;
-    const auto kinematics = Law::KinematicsOf(g);
-    T density = Law::Energy(g, kinematics, lame(b));
-    if constexpr (Fibres<T>::kPresent) {
-      Matrix3<T> stress = Law::Stress(g, kinematics, lame(b));
-      density += fibres_.AddStress(b, g, stress);
-    }
-    const T energy = tets_.batches[static_cast<size_t>(b)].volume * density;
-    return stress_unit_ * std::pow(tets_.length_unit, 3) *
-           double{energy[place % TetBatches<T>::kLanes]};
+    const T energy = tets_.batches[static_cast<size_t>(b)].volume * EnergyDensity(b, g);
+    return double{energy[place % TetBatches<T>::kLanes]} * stress_unit_ *
+           std::pow(tets_.length_unit, 3);
   }
 
   void AddRestModuli(int64_t tet, Matrix6& moduli) const override {
@@ -200,7 +181,38 @@ class ElasticTerm final : public TetTerm {
     if constexpr (Fibres<T>::kPresent) fibres_.AddRestModuli(b, lane, stress_unit_, moduli);
   }
 
- private:
+ protected:
+  // Adds dPsi/dF, Pa, where F - I of a batch is g_of(batch); of fibres only if it breaks edges.
+  template <typename GradientOf>
+  void AddStressAt(const GradientOf& g_of, std::span<Eigen::Matrix3d> stresses) const {
+    ForEachBatch(tets_, [&](int64_t begin, int64_t end) {
+      for (int64_t b = begin; b < end; ++b) {
+        const Matrix3<T> g = g_of(b);
+        Matrix3<T> stress = Law::Stress(g, Law::KinematicsOf(g), lame(b));
+        if constexpr (Fibres<T>::kPresent) {
+          if (fibres_break_) fibres_.AddStress(b, g, stress);
+        }
+        const int lanes = tets_.lanes(b);
+        for (int lane = 0; lane < lanes; ++lane) {
+          Eigen::Matrix3d& target =
+              stresses[static_cast<size_t>(tets_.tet_at(b * TetBatches<T>::kLanes + lane))];
+          for (int k = 0; k < 9; ++k)
+            target(k / 3, k % 3) += stress_unit_ * double{stress(k / 3, k % 3)[lane]};
+        }
+      }
+    });
+  }
+
+  // In units of stress.
+  T EnergyDensity(int64_t b, const Matrix3<T>& g) const {
+    T density = Law::Energy(g, Law::KinematicsOf(g), lame(b));
+    if constexpr (Fibres<T>::kPresent) {
+      Matrix3<T> stress = {};
+      density += fibres_.AddStress(b, g, stress);
+    }
+    return density;
+  }
+
   // Pa, a power of two: in float near the largest modulus, so that no product leaves the range.
   static double StressUnit(const ElasticPart& part) {
     if constexpr (std::is_same_v<T, Double4>) return 1;

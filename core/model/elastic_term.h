@@ -26,6 +26,8 @@ struct ElasticPart {
   std::vector<int32_t> tets = {};           // ascending; empty for all of the mesh
   std::vector<LameConstants<double>> lame;  // a record for all tets, or one each
   std::vector<FibreFamilyPart> fibres = {};
+  // Of ductile tets, a record for all or one each; else empty.
+  std::vector<Plasticity> plasticity = {};
 };
 
 // The elastic energy of a part, fibres included, with element arithmetic in `precision`. The stress

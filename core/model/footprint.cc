@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/base/vec3.h"
@@ -16,6 +17,7 @@
 #include "core/model/fragment_contact.h"
 #include "core/model/load_terms.h"
 #include "core/model/nodal_vector.h"
+#include "core/model/plastic_term.h"
 
 namespace cleave {
 namespace {
@@ -51,12 +53,15 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
                        (edges + 1 + 6 * tets) * kInt);   // tets of edges
   const bool uniform = scene.materials.size() <= 1;
   const Precision precision = scene.quality.precision;
-  std::set<std::pair<ElasticLaw, size_t>> kinds;  // of elastic terms, as in BuildModel
+  std::set<std::tuple<ElasticLaw, size_t, bool>> kinds;  // of elastic terms, as in BuildModel
   size_t families = 0;
+  bool flows = false;
   for (const Material& material : scene.materials) {
     size_t stiff = 0;
     for (const FibreFamily& family : material.fibres) stiff += family.stiffness > 0;
-    kinds.insert({material.law, stiff});
+    const bool ductile = material.plasticity.has_value();
+    kinds.insert({material.law, stiff, ductile});
+    flows = flows || ductile;
     families = std::max(families, stiff);
   }
   // The last batch of each kind may be part empty.
@@ -118,6 +123,11 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   }
   if (families > 0) {
     add("fibres", static_cast<int64_t>(families) * FibreFamilyBytes(precision, elastic_tets));
+  }
+  if (flows) {
+    add("plasticity", PlasticBytes(precision, elastic_tets, uniform) +
+                          (breaks ? tets * static_cast<int64_t>(sizeof(PlasticTet)) + tets * kInt
+                                  : 0));  // as fracture sees it
   }
   if (breaks) {
     add("fracture",

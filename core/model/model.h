@@ -15,6 +15,7 @@
 #include "core/model/edge_projected_term.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/node_term.h"
+#include "core/model/plastic_term.h"
 #include "core/model/prescribed_motion.h"
 #include "core/model/release.h"
 #include "core/model/tet_term.h"
@@ -65,6 +66,7 @@ struct Model {
   // two of each moving collider.
   std::vector<double> masses;
   std::vector<std::unique_ptr<TetTerm>> tet_terms;
+  std::vector<PlasticTerm*> plastic_terms;  // those of tet_terms that flow
   std::vector<std::unique_ptr<NodeTerm>> node_terms;
   const ColliderTerm* colliders = nullptr;  // one of the node terms, where the scene has any
   std::optional<Vec3> gravity;              // m/s^2

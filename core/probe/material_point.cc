@@ -1,6 +1,7 @@
 #include "core/probe/material_point.h"
 
 #include <Eigen/Dense>
+#include <limits>
 
 #include "core/base/double4.h"
 #include "core/base/matrix3.h"
@@ -157,7 +158,7 @@ bool MaterialPoint::Flow(const Matrix3d& g, PlasticState& plastic) const {
   if (!plasticity_.has_value()) return false;
   const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
   const FlowRule<Double4> rule{Splat(plasticity_->yield_stress), Splat(plasticity_->hardening),
-                               Splat(0)};
+                               Splat(std::numeric_limits<double>::infinity())};
   const Matrix3<Double4> elastic = Batched(ElasticChange(g, plastic));
   const PlasticReturn flow = WithLaw(law_, [&]<typename Law>(Law) {
     return ReturnToYield<Law>(elastic, lame, rule, Splat(plastic.strain));

@@ -77,9 +77,9 @@ void CheckPlasticity(const std::string& field, const Material& material,
   check.Above(field + ".flow_rate", plasticity.flow_rate, 0, kInfinity);
   if (plasticity.failure_strain.has_value()) {
     check.Above(field + ".failure_strain", *plasticity.failure_strain, 0, kInfinity);
-    if (!material.tensile_strength.has_value())
+    if (!(material.tensile_strength.value_or(kInfinity) < kInfinity))
       faults.Error(field + ".failure_strain",
-                   "needs a tensile_strength: without one the material never breaks");
+                   "needs a finite tensile_strength: without one the material never breaks");
   }
   const bool fails_by_strain = plasticity.failure_strain.value_or(kInfinity) < kInfinity;
   if (!material.tensile_strength.has_value() || !(*material.tensile_strength < kInfinity)) return;

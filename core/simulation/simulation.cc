@@ -23,12 +23,13 @@ namespace cleave {
 namespace {
 
 constexpr uint64_t kSavedMagic = 0x3145544154535643u;  // "CVSTATE1"
-constexpr uint32_t kSavedVersion = 2;
+constexpr uint32_t kSavedVersion = 3;
 
 // J, summed up since the start.
 struct Energies {
   double external_work = 0;
   double fracture_energy = 0;
+  double plastic_work = 0;
   double friction_dissipation = 0;
   double integration_dissipation = 0;
 };
@@ -65,6 +66,7 @@ class BodySimulation final : public Simulation {
     ++frame_;
     energies_.external_work += steps.external_work;
     energies_.fracture_energy += steps.fracture_energy;
+    energies_.plastic_work += steps.plastic_work;
     energies_.friction_dissipation += steps.friction_dissipation;
     energies_.integration_dissipation += steps.integration_dissipation;
     PublishPositions();
@@ -87,6 +89,7 @@ class BodySimulation final : public Simulation {
     report.kinetic_energy = KineticEnergy(model_, state_);
     report.elastic_energy = stepper_.elastic_energy();
     report.external_work = energies_.external_work;
+    report.plastic_work = energies_.plastic_work;
     report.contact_energy = steps.contact_energy;
     report.friction_dissipation = energies_.friction_dissipation;
     report.integration_dissipation = energies_.integration_dissipation;
@@ -111,6 +114,21 @@ class BodySimulation final : public Simulation {
   const std::vector<Vec3>& positions() const override { return positions_; }
   int64_t fragments() const override { return fragments_; }
   const std::vector<int32_t>& broken_edges() const override { return broken_edges_; }
+
+  std::vector<double> plastic_strains() const override {
+    if (model_.plastic_terms.empty()) return {};
+    std::vector<double> strains(static_cast<size_t>(model_.tet_count()), 0);
+    std::vector<double> of_term;
+    for (const PlasticTerm* term : model_.plastic_terms) {
+      of_term.resize(static_cast<size_t>(term->tet_count()));
+      term->GetPlasticStrains(of_term);
+      for (size_t place = 0; place < of_term.size(); ++place) {
+        const auto tet = static_cast<size_t>(term->tet_at(static_cast<int64_t>(place)));
+        strains[static_cast<size_t>(model_.order.old_tet[tet])] = of_term[place];
+      }
+    }
+    return strains;
+  }
 
   std::string Save() const override {
     std::string saved;

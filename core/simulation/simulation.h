@@ -37,10 +37,12 @@ struct FrameReport {
   double elastic_energy = 0;        // J, at the end
   double external_work = 0;         // J, by gravity, motions and loads, since the start
   double fracture_energy = 0;       // J, elastic energy lost to breaking, since the start
+  double plastic_work = 0;          // J, elastic energy lost to plastic flow, since the start
   double contact_energy = 0;        // J, stored where bodies touch, at the end
   double friction_dissipation = 0;  // J, since the start
   // J, what time integration took out, since the start. External work is the change of kinetic,
-  // elastic and contact energy, and what fracture, friction and integration took out.
+  // elastic and contact energy, and what fracture, plastic flow, friction and integration
+  // took out.
   double integration_dissipation = 0;
   int64_t broken_edges = 0;              // since the start
   int64_t new_broken_edges = 0;          // in this frame
@@ -81,6 +83,8 @@ class Simulation {
   virtual const std::vector<Vec3>& positions() const = 0;        // m; unreferenced nodes rest
   virtual const std::vector<int32_t>& broken_edges() const = 0;  // ascending
   virtual int64_t fragments() const = 0;  // node components through unbroken edges
+  // Equivalent plastic strains, a tet each, in the client's order; empty where nothing is ductile.
+  virtual std::vector<double> plastic_strains() const = 0;
 
   // Everything that decides the frames to come. Restore refuses (DataLoss, FailedPrecondition)
   // bytes that are damaged or of another scene, mesh or format, and then changes nothing.

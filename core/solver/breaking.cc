@@ -48,6 +48,15 @@ Breaking::Breaking(const Model& model)
       positions_(model.masses.size()),
       stresses_(static_cast<size_t>(model.tet_count())),
       edge_stresses_(fatigue_ ? static_cast<size_t>(model.incidence->edge_count()) : 0) {
+  if (!model.plastic_terms.empty()) {
+    plastic_record_of_.assign(static_cast<size_t>(model.tet_count()), -1);
+    int32_t record = 0;
+    for (const PlasticTerm* term : model.plastic_terms) {
+      for (int64_t place = 0; place < term->tet_count(); ++place)
+        plastic_record_of_[static_cast<size_t>(term->tet_at(place))] = record++;
+    }
+    plastic_tets_.resize(static_cast<size_t>(record));
+  }
   // Edges without strength are cut before anything moves.
   if (fracture_.broken_edge_count() > 0) {
     // At rest nothing has energy that could rise.
@@ -67,11 +76,19 @@ void Breaking::FindStresses(const NodalVector& displacements) {
     std::fill(stresses_.begin() + begin, stresses_.begin() + end, Eigen::Matrix3d::Zero());
   });
   for (const auto& term : model_.tet_terms) term->AddEffectiveStress(displacements, stresses_);
+  size_t record = 0;
+  for (const PlasticTerm* term : model_.plastic_terms) {
+    const auto count = static_cast<size_t>(term->tet_count());
+    term->GetPlasticTets(std::span(plastic_tets_).subspan(record, count));
+    record += count;
+  }
 }
 
 int64_t Breaking::BreakPass(const NodalVector& displacements) {
   FindStresses(displacements);
-  const PassResult result = fracture_.BreakPass(positions_, stresses_);
+  const PlasticTets plastic = {plastic_record_of_, plastic_tets_};
+  const PassResult result =
+      fracture_.BreakPass(positions_, stresses_, plastic_tets_.empty() ? nullptr : &plastic);
   for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
   if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   stresses_are_last_ = result.broken_edges.empty();
@@ -83,7 +100,9 @@ void Breaking::EndStep(const NodalVector& displacements) {
   if (!fatigue_) return;
   // After the last pass that a step may have, the body was solved for once more.
   if (!stresses_are_last_) FindStresses(displacements);
-  fracture_.EdgeStresses(positions_, stresses_, edge_stresses_);
+  const PlasticTets plastic = {plastic_record_of_, plastic_tets_};
+  fracture_.EdgeStresses(positions_, stresses_, plastic_tets_.empty() ? nullptr : &plastic,
+                         edge_stresses_);
   const EdgeStrengths strengths = StrengthsOf(*model_.fracture, graph_, fatigue_);
   if (fatigue_->Follow(edge_stresses_, strengths.tensile, strengths.kappa))
     fracture_.UpdateThresholds();
@@ -211,7 +230,9 @@ std::vector<int32_t> Breaking::ClientBrokenEdges() const {
 
 int64_t Breaking::bytes() const {
   return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
-                              stresses_.size() * sizeof(Eigen::Matrix3d) + mark_.size()) +
+                              stresses_.size() * sizeof(Eigen::Matrix3d) +
+                              plastic_record_of_.size() * sizeof(int32_t) +
+                              plastic_tets_.size() * sizeof(PlasticTet) + mark_.size()) +
          (graph_ ? graph_->bytes() : 0) + (fatigue_ ? fatigue_->bytes() : 0);
 }
 

@@ -80,6 +80,9 @@ class Breaking {
   std::vector<double> edge_stresses_;      // Pa, where the materials tire
   bool stresses_are_last_ = false;         // those of the last solve
   std::span<const int32_t> newly_broken_;
+  // Where tets are ductile: records of them, in the order of the plastic terms.
+  std::vector<int32_t> plastic_record_of_;  // a tet each
+  std::vector<PlasticTet> plastic_tets_;
   std::string mark_;
   int64_t marked_broken_edges_ = 0;
 };

@@ -16,6 +16,7 @@ struct StepReport {
   double residual = 0;         // worst relative force residual at which a solve stopped
   double external_work = 0;    // J, by gravity, prescribed motions and loads
   double fracture_energy = 0;  // J, elastic energy lost to breaking
+  double plastic_work = 0;     // J, elastic energy lost to plastic flow
   // J, what backward Euler and the staging of fracture within steps took out.
   double integration_dissipation = 0;
   double contact_energy = 0;        // J, that node terms hold at the end of the last step

@@ -110,11 +110,16 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   if (breaking_) {
     CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, report));
     moving = MovingEnergies(dt, state);
+  } else {
+    Flow(dt);
   }
+  double plastic_work = 0;
+  for (PlasticTerm* term : model_.plastic_terms) plastic_work += term->KeepFlow();
   integration += moving.change + intact.end - moving.end;
-  elastic_energy_ = newton_.elastic_energy();
+  elastic_energy_ = newton_.elastic_energy() - plastic_work;
 
   report.fracture_energy += fracture_energy;
+  report.plastic_work += plastic_work;
   report.integration_dissipation += integration;
   report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)
@@ -143,6 +148,7 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
   for (int32_t pass = 0; pass < model_.fracture->max_passes; ++pass) {
     {
       ScopedTimer timer(report.fracture_seconds);
+      Flow(dt);
       if (breaking_->BreakPass(displacements_) == 0) return absl::OkStatus();
     }
     for (const auto& term : model_.node_terms)
@@ -153,7 +159,12 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     fracture_energy += before - newton_.initial_elastic_energy();
     integration += newton_.decrease();
   }
+  Flow(dt);
   return absl::OkStatus();
+}
+
+void Stepper::Flow(double dt) {
+  for (PlasticTerm* term : model_.plastic_terms) term->Flow(displacements_, dt);
 }
 
 Stepper::KineticEnergies Stepper::MovingEnergies(double dt, const State& state) const {

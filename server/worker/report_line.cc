@@ -40,6 +40,7 @@ std::string ReportLine(const FrameReport& report) {
   add("elastic_energy", Number(report.elastic_energy));
   add("external_work", Number(report.external_work));
   add("fracture_energy", Number(report.fracture_energy));
+  add("plastic_work", Number(report.plastic_work));
   add("contact_energy", Number(report.contact_energy));
   add("friction_dissipation", Number(report.friction_dissipation));
   add("integration_dissipation", Number(report.integration_dissipation));

@@ -94,7 +94,7 @@ class EdgeStressTest : public ::testing::Test {
     EdgeFracture fracture(mesh_, incidence_, Broadcast<double>::Uniform(threshold_),
                           {.aggregation = aggregation});
     std::vector<double> stresses(incidence_.edges.size());
-    fracture.EdgeStresses(positions, Stresses(mesh_, positions, 1000, 0.3), stresses);
+    fracture.EdgeStresses(positions, Stresses(mesh_, positions, 1000, 0.3), nullptr, stresses);
     return stresses;
   }
 

@@ -55,7 +55,7 @@ class ReferenceTet : public ::testing::Test {
 TEST_F(ReferenceTet, EdgeStressesMatch) {
   thresholds_.fill(kInfinite);
   std::vector<double> stresses(6);
-  Fracture().EdgeStresses(kPositions, kStress, stresses);
+  Fracture().EdgeStresses(kPositions, kStress, nullptr, stresses);
   for (size_t k = 0; k < 6; ++k) EXPECT_NEAR(stresses[k], kEdgeStress[k], 1e-9);
 }
 

@@ -23,7 +23,7 @@ LameConstants<Double4> Lame() {
 }
 
 FlowRule<Double4> Rule(double yield_stress, double hardening, double retained = 0) {
-  return {Splat(yield_stress), Splat(hardening), Splat(retained)};
+  return {Splat(yield_stress), Splat(hardening), Splat(-std::log(retained))};
 }
 
 // One return from F with F_p^-1 = I + B and a plastic strain.

@@ -89,6 +89,9 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene = minimal;
   scene.materials[0].fibres.push_back({1e6, ConstantDirection{{1, 0, 0}}, 1});
   expect_adds(scene, "fibres");
+  scene = minimal;
+  scene.materials[0].plasticity = Plasticity{.yield_stress = 1e4};
+  expect_adds(scene, "plasticity");
   // Where nothing breaks, strengths do not exist.
   scene = minimal;
   scene.impurities = Impurities{.potency = 1};
@@ -168,6 +171,22 @@ TEST(Footprint, ElasticityTakesTheBytesThatWerePlanned) {
       EXPECT_EQ(BytesOf(footprint, "elasticity"), model.tet_terms[0]->bytes());
       scene.materials.push_back(scene.materials[0]);
     }
+  }
+}
+
+TEST(Footprint, PlasticityTakesTheBytesThatWerePlanned) {
+  const TetMesh mesh = KuhnBox({5, 4, 3}, {1, 1, 1});
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+    scene.quality.precision = precision;
+    scene.materials[0].plasticity = Plasticity{.yield_stress = 1e4};
+    const Model model = *BuildModel(scene, mesh);
+    ASSERT_EQ(model.plastic_terms.size(), 1u);
+    EXPECT_EQ(model.tet_terms.size(), 1u);
+    const Footprint footprint =
+        PlanModel(scene, mesh.node_count(), mesh.tet_count(), model.incidence->edge_count());
+    EXPECT_EQ(BytesOf(footprint, "plasticity") + BytesOf(footprint, "elasticity"),
+              model.tet_terms[0]->bytes());
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/ductile_bar.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
@@ -31,8 +32,8 @@ Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic
     EXPECT_TRUE(report.ok()) << report.status();
     if (!report.ok()) break;
     const double held = report->kinetic_energy + report->elastic_energy + report->contact_energy;
-    const double taken =
-        report->fracture_energy + report->friction_dissipation + report->integration_dissipation;
+    const double taken = report->fracture_energy + report->plastic_work +
+                         report->friction_dissipation + report->integration_dissipation;
     for (const double energy : {report->external_work, held, taken, initial_kinetic_energy})
       budget.largest = std::max(budget.largest, std::abs(energy));
     EXPECT_NEAR(report->external_work + initial_kinetic_energy, held + taken,
@@ -136,6 +137,17 @@ TEST(EnergyBudget, ClosesForABarThatIsPulledApart) {
   const Budget budget = MustClose(scene, BarMesh());
   EXPECT_GT(budget.last.fragments, 1);
   EXPECT_GT(budget.last.fracture_energy, 0.01 * budget.largest);
+}
+
+TEST(EnergyBudget, ClosesForADuctileBarWithFibres) {
+  for (const bool viscous : {false, true}) {
+    Scene scene = TwistedBar();
+    scene.timing.frame_count = 12;
+    if (viscous) scene.materials[0].plasticity->flow_rate = 20;
+    scene.materials[0].fibres.push_back({5e5, ConstantDirection{{1, 1, 0}}});
+    const Budget budget = MustClose(scene, TwistedBarMesh());
+    EXPECT_GT(budget.last.plastic_work, 0.05 * budget.largest);
+  }
 }
 
 }  // namespace
