@@ -10,6 +10,7 @@ namespace cleave {
 struct StepReport {
   int32_t steps = 0;  // the parts of halved steps count each
   int32_t step_halvings = 0;
+  double shortest_step = 0;  // s, of all parts
   int32_t newton_iterations = 0;
   int32_t linear_iterations = 0;
   int32_t break_passes = 0;

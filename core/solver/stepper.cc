@@ -139,6 +139,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     term->Renew(state);
   }
   report.contact_energy = stored_energy;
+  report.shortest_step = report.steps == 0 ? dt : std::min(report.shortest_step, dt);
   ++report.steps;
   return absl::OkStatus();
 }

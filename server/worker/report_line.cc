@@ -68,6 +68,15 @@ std::string ReportLine(const FrameReport& report) {
   add("linear_solve_seconds", Number(report.linear_solve_seconds));
   add("fracture_seconds", Number(report.fracture_seconds));
   add("total_seconds", Number(report.total_seconds));
+  add("shortest_step", Number(report.shortest_step));
+  const Quality& quality = report.quality;
+  const char* precision = quality.precision == Precision::kFloat ? "float" : "double";
+  add("in_force", absl::StrCat("{\"precision\":\"", precision,
+                               "\",\"residual_tolerance\":", Number(quality.residual_tolerance),
+                               ",\"step_tolerance\":", Number(quality.step_tolerance),
+                               ",\"linear_tolerance\":", Number(quality.linear_tolerance),
+                               ",\"newton_iterations\":", quality.newton_iterations,
+                               ",\"max_step_halvings\":", quality.max_step_halvings, "}"));
   line += '}';
   return line;
 }

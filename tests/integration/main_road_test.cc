@@ -95,6 +95,7 @@ TEST(MainRoadTest, AMeshFileBecomesAStreamOfItsBreakAndAFilmOfIt) {
   const std::string reports = ReadBytes(server.session_directory("bar") + "/reports.jsonl");
   EXPECT_EQ(std::count(reports.begin(), reports.end(), '\n'), last.frame);
   EXPECT_THAT(reports, HasSubstr("\"motion_forces\":[["));
+  EXPECT_THAT(reports, HasSubstr("\"in_force\":{\"precision\":\"double\""));
 
   // Show: a series that ParaView opens.
   const absl::StatusOr<Recording> recording = OpenRecording(out / "bar.clv", mesh->rest_positions);

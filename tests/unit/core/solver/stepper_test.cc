@@ -174,6 +174,7 @@ TEST(Stepper, AStepThatDoesNotConvergeIsHalved) {
   ASSERT_TRUE(status.ok()) << status;
   EXPECT_GT(report.step_halvings, 0);
   EXPECT_EQ(report.steps, report.step_halvings + 1);
+  EXPECT_LE(report.shortest_step, 0.05);
   for (const FixedNode& fixed : stepper.solver().fixed_nodes()) {
     const auto node = static_cast<size_t>(fixed.node);
     const double wanted = model.mesh->rest_positions[node][0] > 1 ? 1 : 0;
