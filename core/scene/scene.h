@@ -280,7 +280,7 @@ struct BoxShape {
 struct SurfaceShape {
   std::vector<Vec3> vertices;                     // m
   std::vector<std::array<int32_t, 3>> triangles;  // of vertices, from 0
-  // A file beside the scene file, in place of both. Only clients know it: they send what it holds.
+  // A file beside the scene file, in place of both; refused by name until clients read such files.
   std::string file = {};
 };
 using Shape = std::variant<std::monostate, PlaneShape, SphereShape, BoxShape, SurfaceShape>;
