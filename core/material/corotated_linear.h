@@ -18,6 +18,10 @@ struct CorotatedLinear {
   static SignedSvd<T> KinematicsOf(const Matrix3<T>& g) {
     return ComputeSvd(g);
   }
+  template <typename T>
+  static SignedSvd<T> KinematicsOf(const SignedSvd<T>& svd) {
+    return svd;
+  }
 
   // J/m^3.
   template <typename T>

@@ -17,8 +17,8 @@ namespace cleave {
 std::vector<Vec3> FibreDirections(const FibreDirection& direction, const TetMesh& mesh,
                                   std::span<const int32_t> tets);
 
-// The unit direction of fibres at a point at rest, m; nullopt for a direction that no point decides:
-// none, or one a tet. Precondition: the direction passed validation.
+// The unit direction of fibres at a point at rest, m; nullopt for a direction that no point
+// decides: none, or one a tet. Precondition: the direction passed validation.
 std::optional<Vec3> FibreDirectionAt(const FibreDirection& direction, const Vec3& point);
 
 }  // namespace cleave

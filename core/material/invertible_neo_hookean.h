@@ -31,8 +31,12 @@ struct InvertibleNeoHookean {
 
   template <typename T>
   static Kinematics<T> KinematicsOf(const Matrix3<T>& g) {
+    return KinematicsOf(ComputeSvd(g));
+  }
+  template <typename T>
+  static Kinematics<T> KinematicsOf(const SignedSvd<T>& svd) {
     Kinematics<T> kinematics;
-    kinematics.svd = ComputeSvd(g);
+    kinematics.svd = svd;
     SetLogs(kinematics);
     return kinematics;
   }
@@ -68,9 +72,7 @@ struct InvertibleNeoHookean {
   // Second derivative at the singular values, not projected.
   template <typename T>
   static StiffnessSpectrum<T> Spectrum(const SignedSvd<T>& svd, const LameConstants<T>& lame) {
-    Kinematics<T> kinematics;
-    kinematics.svd = svd;
-    SetLogs(kinematics);
+    const Kinematics<T> kinematics = KinematicsOf(svd);
     StiffnessSpectrum<T> spectrum;
     const T* s = svd.s;
     const T* slope = kinematics.slope;

@@ -37,6 +37,7 @@ struct Deformation {
 template <typename T>
 struct RestShape {
   using Term = TetTerm;  // what a term with this shape is
+  static constexpr bool kFlows = false;
 
   Deformation<T> DeformationOf(int64_t /*b*/, const Matrix3<T>& rest_gradient,
                                const Matrix3<T>& moves) const {
@@ -107,6 +108,8 @@ class ElasticTerm : public Shape<T>::Term {
         const auto kinematics = Law::KinematicsOf(g);
         T density = Law::Energy(g, kinematics, lame(b));
         Matrix3<T> stress = Law::Stress(g, kinematics, lame(b));
+        if constexpr (Shape<T>::kFlows)
+          shape_.template Relax<Law>(b, g, stress_unit_, density, stress);
         if constexpr (Fibres<T>::kPresent) density += fibres_.AddStress(b, g, stress);
         const TetBatch<T>& batch = tets_.batches[static_cast<size_t>(b)];
         energy += Fold(batch.volume * density);
@@ -138,6 +141,7 @@ class ElasticTerm : public Shape<T>::Term {
         const Deformation<T> deformation = DeformationOf(b, displacements);
         const SignedSvd<T> svd = ComputeSvd(deformation.g);
         StiffnessSpectrum<T> spectrum = Law::Spectrum(svd, lame(b));
+        if constexpr (Shape<T>::kFlows) shape_.template Relax<Law>(b, svd, stress_unit_, spectrum);
         if (curvature == Curvature::kSemidefinite) ProjectToSemidefinite(spectrum);
         const T scale = block_unit * batch.volume;
         SetElementBlocks(deformation.gradient, scale, svd, spectrum, element);

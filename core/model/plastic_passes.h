@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -16,19 +17,8 @@
 
 namespace cleave {
 
-// Four lanes of a batch, in double: the return to the yield surface is calculated in that.
-inline Double4 PartOf(Double4 batch, int /*part*/) { return batch; }
-inline Double4 PartOf(Float8 batch, int part) {
-  return Widen(part == 0 ? LowHalf(batch) : HighHalf(batch));
-}
-template <typename T>
-Matrix3<Double4> PartOf(const Matrix3<T>& batch, int part) {
-  Matrix3<Double4> four;
-  for (int k = 0; k < 9; ++k) four(k / 3, k % 3) = PartOf(batch(k / 3, k % 3), part);
-  return four;
-}
-
-// What flow adds to the passes of an elastic term. Source: method note, section 6.
+// What flow adds to the passes of an elastic term: the end of a step. Source: method note, section
+// 6.
 template <typename T, typename Law, template <typename> typename Fibres>
 class PlasticPasses final : public ElasticTerm<T, Law, Fibres, PlasticShape> {
  public:
@@ -37,30 +27,48 @@ class PlasticPasses final : public ElasticTerm<T, Law, Fibres, PlasticShape> {
 
   absl::string_view name() const override { return "plasticity"; }
 
-  void Flow(const NodalVector& displacements, double dt) override {
+  void BeginStep(double dt) override { this->shape_.BeginStep(dt); }
+
+  // Bars tets whose flow would leave kLargestPlasticRatio, or load fibres with more energy than it
+  // takes: fibres that are pulled while the solid around them is crushed that way. In pairs of
+  // energies that jump, as those of fibres that turn over.
+  bool ChooseBranches(const NodalVector& displacements) override {
+    bool changed = Elastic::ChooseBranches(displacements);
+    std::atomic<bool> barred = false;
     ForEachBatch(this->tets_, [&](int64_t begin, int64_t end) {
-      for (int64_t b = begin; b < end; ++b) FlowBatch(b, displacements, dt);
+      for (int64_t b = begin; b < end; ++b) {
+        if (BarBatch(b, this->DeformationOf(b, displacements).g)) barred = true;
+      }
     });
+    return changed || barred;
   }
 
-  double KeepFlow() override {
-    const std::vector<T>& released = this->shape_.released();
+  void Flow(const NodalVector& displacements) override {
+    chunk_work_.resize(static_cast<size_t>(this->tets_.chunk_count()));
     ParallelFor(this->tets_.chunk_count(), 1, [&](int64_t begin, int64_t end) {
       for (int64_t chunk = begin; chunk < end; ++chunk) {
         const int64_t first = chunk * TetBatches<T>::kChunkBatches;
         const int64_t last =
             std::min(first + TetBatches<T>::kChunkBatches, this->tets_.batch_count());
-        Double4 energy = Splat(0);
-        for (auto b = static_cast<size_t>(first); b < static_cast<size_t>(last); ++b) {
-          energy += Fold(this->tets_.batches[b].volume * released[b]);
-          this->shape_.kept()[b] = this->shape_.flowed()[b];
-        }
-        this->chunk_energy_[static_cast<size_t>(chunk)] = Sum(energy);
+        FlowWork work;
+        for (int64_t b = first; b < last; ++b) FlowBatch(b, displacements, work);
+        chunk_work_[static_cast<size_t>(chunk)] = work;
       }
     });
-    double energy = 0;
-    for (const double of_chunk : this->chunk_energy_) energy += of_chunk;
-    return energy * this->stress_unit_ * std::pow(this->tets_.length_unit, 3);
+  }
+
+  FlowWork KeepFlow() override {
+    ForEachBatch(this->tets_, [&](int64_t begin, int64_t end) {
+      for (auto b = static_cast<size_t>(begin); b < static_cast<size_t>(end); ++b)
+        this->shape_.kept()[b] = this->shape_.flowed()[b];
+    });
+    FlowWork sum;
+    for (const FlowWork& of_chunk : chunk_work_) {
+      sum.work += of_chunk.work;
+      sum.potential += of_chunk.potential;
+    }
+    const double unit = std::pow(this->tets_.length_unit, 3);
+    return {sum.work * unit, sum.potential * unit};
   }
 
   void AddEffectiveStress(const NodalVector& displacements,
@@ -158,47 +166,86 @@ class PlasticPasses final : public ElasticTerm<T, Law, Fibres, PlasticShape> {
         VertexMoves(batch, displacements.data(), this->tets_.length_unit));
   }
 
-  void FlowBatch(int64_t b, const NodalVector& displacements, double dt) {
+  // The elastic energy density, Pa, that fibres give up as a batch flows.
+  Double4 FibresRelease(int64_t b, int part, const Matrix3<Double4>& trial,
+                        const Matrix3<Double4>& flowed) const {
+    if constexpr (Fibres<T>::kPresent) {
+      Matrix3<T> before = {}, after = {}, stress = {};
+      for (int k = 0; k < 9; ++k) {
+        SetPart(before(k / 3, k % 3), part, Int64x4{-1, -1, -1, -1}, trial(k / 3, k % 3));
+        SetPart(after(k / 3, k % 3), part, Int64x4{-1, -1, -1, -1}, flowed(k / 3, k % 3));
+      }
+      const T released =
+          this->fibres_.AddStress(b, before, stress) - this->fibres_.AddStress(b, after, stress);
+      return this->stress_unit_ * PartOf(released, part);
+    } else {
+      return Splat(0);
+    }
+  }
+
+  // F_e - I after a flow by R - I: (I + G) R - I.
+  static Matrix3<Double4> AfterFlow(const Matrix3<Double4>& trial, const Matrix3<Double4>& change) {
+    Matrix3<Double4> flowed = trial * change;
+    for (int k = 0; k < 9; ++k) flowed(k / 3, k % 3) += trial(k / 3, k % 3) + change(k / 3, k % 3);
+    return flowed;
+  }
+
+  bool BarBatch(int64_t b, const Matrix3<T>& trial) {
+    bool barred = false;
+    for (int part = 0; part < PlasticShape<T>::kParts; ++part) {
+      const Matrix3<Double4> g = PartOf(trial, part);
+      if (!Fibres<T>::kPresent && !IsFarFromRest(g, this->shape_.StrainOf(b, part))) continue;
+      const auto svd = ComputeSvd(g);
+      const auto flow = this->shape_.template FlowOf<Law>(b, part, svd.strain);
+      if (!Any(flow.flows)) continue;
+      const Matrix3<Double4> change = FlowChange(svd.v, flow.log_flow);
+      const Matrix3<Double4> inverse =
+          FlowedInverse(PartOf(this->shape_.kept()[static_cast<size_t>(b)].inverse, part), change);
+      const Int64x4 stays = IsWithinPlasticRatio(inverse) &
+                            (flow.potential + FibresRelease(b, part, g, AfterFlow(g, change)) >= 0);
+      for (int lane = 0; lane < 4; ++lane) {
+        if (flow.flows[lane] == 0 || stays[lane] != 0) continue;
+        this->shape_.Bar(b, 4 * part + lane);
+        barred = true;
+      }
+    }
+    return barred;
+  }
+
+  // Nearer than this, no flow reaches kLargestPlasticRatio: singular values of F_p lie within
+  // exp(sqrt(3) strain) of each other, and a step adds no more than those of F_e.
+  static bool IsFarFromRest(const Matrix3<Double4>& trial, Double4 strain) {
+    Double4 squares = Splat(0);
+    for (int k = 0; k < 9; ++k) squares += trial(k / 3, k % 3) * trial(k / 3, k % 3);
+    return Any(~(strain < 1) | ~(squares < 0.25));
+  }
+
+  void FlowBatch(int64_t b, const NodalVector& displacements, FlowWork& work) {
     const auto index = static_cast<size_t>(b);
     const PlasticState<T>& kept = this->shape_.kept()[index];
     PlasticState<T>& flowed = this->shape_.flowed()[index];
     flowed = kept;
-    this->shape_.released()[index] = T{};
-    const Deformation<T> trial = this->DeformationOf(b, displacements);
-    bool any = false;
+    const Matrix3<T> trial = this->DeformationOf(b, displacements).g;
     for (int part = 0; part < PlasticShape<T>::kParts; ++part) {
-      const PlasticRecord& record = this->shape_.record(b, part);
-      const FlowRule<Double4> rule = {record.yield_stress, record.hardening, record.flow_rate * dt};
-      const PlasticReturn flow =
-          ReturnToYield<Law>(PartOf(trial.g, part), record.lame, rule, PartOf(kept.strain, part));
+      const Matrix3<Double4> g = PartOf(trial, part);
+      const auto svd = ComputeSvd(g);
+      const auto flow = this->shape_.template FlowOf<Law>(b, part, svd.strain);
       // Dead tets keep what they have.
-      Int64x4 flows = (flow.strain > 0) & (PartOf(this->tets_.batches[index].volume, part) > 0);
+      const Double4 volume = PartOf(this->tets_.batches[index].volume, part);
+      const Int64x4 flows = flow.flows & (volume > 0);
       if (!Any(flows)) continue;
-      const Matrix3<Double4> inverse = FlowedInverse(PartOf(kept.inverse, part), flow);
-      flows = flows & IsWithinPlasticRatio(inverse);
-      for (int lane = 0; lane < 4; ++lane) {
-        if (flows[lane] == 0) continue;
-        any = true;
-        using Scalar = typename Lanes<T>::Scalar;
-        const int at = 4 * part + lane;
-        for (int k = 0; k < 9; ++k)
-          flowed.inverse(k / 3, k % 3)[at] = static_cast<Scalar>(inverse(k / 3, k % 3)[lane]);
-        flowed.strain[at] += static_cast<Scalar>(flow.strain[lane]);
-      }
+      const Matrix3<Double4> change = FlowChange(svd.v, flow.log_flow);
+      const Matrix3<Double4> inverse = FlowedInverse(PartOf(kept.inverse, part), change);
+      for (int k = 0; k < 9; ++k)
+        SetPart(flowed.inverse(k / 3, k % 3), part, flows, inverse(k / 3, k % 3));
+      SetPart(flowed.strain, part, flows, PartOf(kept.strain, part) + flow.strain);
+      const Double4 released = FibresRelease(b, part, g, AfterFlow(g, change));
+      work.work += Sum(flows ? volume * (flow.work + released) : Splat(0));
+      work.potential += Sum(flows ? volume * (flow.potential + released) : Splat(0));
     }
-    if (!any) return;
-    // Flow only ever takes energy out. Laws that give way when crushed would have it otherwise, and
-    // fibres that are compressed while the solid around them is pulled.
-    const T released = this->EnergyDensity(b, trial.g) -
-                       this->EnergyDensity(b, FlowedDeformation(b, displacements).g);
-    const auto falls = released >= T{};
-    for (int k = 0; k < 9; ++k) {
-      flowed.inverse(k / 3, k % 3) =
-          falls ? flowed.inverse(k / 3, k % 3) : kept.inverse(k / 3, k % 3);
-    }
-    flowed.strain = falls ? flowed.strain : kept.strain;
-    this->shape_.released()[index] = falls ? released : T{};
   }
+
+  std::vector<FlowWork> chunk_work_;  // scratch, a chunk each
 };
 
 template <typename T, typename Law>

@@ -11,7 +11,7 @@ template <typename T>
 int64_t BytesOf(int64_t tet_count, bool uniform) {
   constexpr int64_t kCount = Lanes<T>::kCount;
   const int64_t batches = (tet_count + kCount - 1) / kCount;
-  return batches * static_cast<int64_t>(2 * sizeof(PlasticState<T>) + sizeof(T)) +
+  return batches * static_cast<int64_t>(2 * sizeof(PlasticState<T>) + sizeof(uint8_t)) +
          (uniform ? 1 : batches * PlasticShape<T>::kParts) *
              static_cast<int64_t>(sizeof(PlasticRecord));
 }

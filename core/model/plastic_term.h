@@ -15,17 +15,27 @@
 
 namespace cleave {
 
-// The energy of ductile tets. Within a step they are elastic, about the plastic strain that they
-// had at its start. AddEffectiveStress gives the stress dPsi/dF_e that is left after the last Flow,
-// so that what a step overshoots the yield surface by breaks nothing.
+// What the flow of a step took, J.
+struct FlowWork {
+  double work = 0;  // out of the body
+  double potential =
+      0;  // what the term's energy at the end of the step holds beyond elastic energy
+};
+
+// The energy of ductile tets: within a step the incremental potential of
+// core/material/incremental_potential.h, elastic energy and what flow since its start takes, so
+// that a solve ends in equilibrium with the stress after the flow. Fibres hold the solid to the
+// shape that it had at the start of the step. AddEffectiveStress gives the stress dPsi/dF_e after
+// the last Flow.
 class PlasticTerm : public TetTerm {
  public:
-  // Finds where a step of `dt` (s) that ends at these displacements leaves the plastic strain, from
-  // that at its start; replaces what the last call found.
-  virtual void Flow(const NodalVector& displacements, double dt) = 0;
-  // Keeps what the last Flow found: the next step starts there. Returns the elastic energy that
-  // flow took out, J, >= 0.
-  virtual double KeepFlow() = 0;
+  // To be called before the solve of a step of `dt` (s), which flows from what was kept last.
+  virtual void BeginStep(double dt) = 0;
+  // Finds where a step that ends at these displacements leaves the plastic strain; replaces what
+  // the last call found.
+  virtual void Flow(const NodalVector& displacements) = 0;
+  // Keeps what the last Flow found: the next step starts there.
+  virtual FlowWork KeepFlow() = 0;
 
   // The tets of this term, by their place in it.
   virtual int64_t tet_count() const = 0;

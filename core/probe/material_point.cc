@@ -1,12 +1,14 @@
 #include "core/probe/material_point.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <limits>
 
 #include "core/base/double4.h"
 #include "core/base/matrix3.h"
 #include "core/material/corotated_linear.h"
 #include "core/material/fibre.h"
+#include "core/material/incremental_potential.h"
 #include "core/material/invertible_neo_hookean.h"
 #include "core/material/isotropic_stiffness.h"
 #include "core/material/plasticity.h"
@@ -159,15 +161,20 @@ bool MaterialPoint::Flow(const Matrix3d& g, PlasticState& plastic) const {
   const LameConstants<Double4> lame{Splat(lame_.mu), Splat(lame_.lambda)};
   const FlowRule<Double4> rule{Splat(plasticity_->yield_stress), Splat(plasticity_->hardening),
                                Splat(std::numeric_limits<double>::infinity())};
-  const Matrix3<Double4> elastic = Batched(ElasticChange(g, plastic));
-  const PlasticReturn flow = WithLaw(law_, [&]<typename Law>(Law) {
-    return ReturnToYield<Law>(elastic, lame, rule, Splat(plastic.strain));
+  const auto svd = ComputeSvd(Batched(ElasticChange(g, plastic)));
+  Double4 log_flow[3];
+  const double strain = WithLaw(law_, [&]<typename Law>(Law) {
+    const StepFlow<Law> flow =
+        FindStepFlow<Law>(svd.strain, lame, rule, Splat(plastic.strain), Int64x4{-1, -1, -1, -1});
+    std::copy(flow.log_flow, flow.log_flow + 3, log_flow);
+    return flow.strain[0];
   });
-  if (!(flow.strain[0] > 0)) return false;
-  const Matrix3<Double4> inverse_change = FlowedInverse(Batched(plastic.inverse_change), flow);
+  if (!(strain > 0)) return false;
+  const Matrix3<Double4> inverse_change =
+      FlowedInverse(Batched(plastic.inverse_change), FlowChange(svd.v, log_flow));
   if (IsWithinPlasticRatio(inverse_change)[0] == 0) return false;
   plastic.inverse_change = FirstLane(inverse_change);
-  plastic.strain += flow.strain[0];
+  plastic.strain += strain;
   return true;
 }
 

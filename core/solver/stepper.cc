@@ -93,6 +93,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   if (breaking_) breaking_->Mark();
   Prepare(start, state);
   for (const auto& term : model_.node_terms) term->BeginStep(start, end, state);
+  for (PlasticTerm* term : model_.plastic_terms) term->BeginStep(dt);
   // Free nodes go on as they moved; given ones are where they will be.
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
@@ -111,15 +112,21 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, report));
     moving = MovingEnergies(dt, state);
   } else {
-    Flow(dt);
+    Flow();
   }
-  double plastic_work = 0;
-  for (PlasticTerm* term : model_.plastic_terms) plastic_work += term->KeepFlow();
-  integration += moving.change + intact.end - moving.end;
-  elastic_energy_ = newton_.elastic_energy() - plastic_work;
+  FlowWork flow;
+  for (PlasticTerm* term : model_.plastic_terms) {
+    const FlowWork of_term = term->KeepFlow();
+    flow.work += of_term.work;
+    flow.potential += of_term.potential;
+  }
+  // What the potential has of viscosity is half of what that takes; the other half was counted as
+  // lost to integration.
+  integration += moving.change + intact.end - moving.end + flow.potential - flow.work;
+  elastic_energy_ = newton_.elastic_energy() - flow.potential;
 
   report.fracture_energy += fracture_energy;
-  report.plastic_work += plastic_work;
+  report.plastic_work += flow.work;
   report.integration_dissipation += integration;
   report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)
@@ -149,7 +156,7 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
   for (int32_t pass = 0; pass < model_.fracture->max_passes; ++pass) {
     {
       ScopedTimer timer(report.fracture_seconds);
-      Flow(dt);
+      Flow();
       if (breaking_->BreakPass(displacements_) == 0) return absl::OkStatus();
     }
     for (const auto& term : model_.node_terms)
@@ -160,12 +167,12 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     fracture_energy += before - newton_.initial_elastic_energy();
     integration += newton_.decrease();
   }
-  Flow(dt);
+  Flow();
   return absl::OkStatus();
 }
 
-void Stepper::Flow(double dt) {
-  for (PlasticTerm* term : model_.plastic_terms) term->Flow(displacements_, dt);
+void Stepper::Flow() {
+  for (PlasticTerm* term : model_.plastic_terms) term->Flow(displacements_);
 }
 
 Stepper::KineticEnergies Stepper::MovingEnergies(double dt, const State& state) const {

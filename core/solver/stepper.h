@@ -59,7 +59,7 @@ class Stepper {
   absl::Status Break(double dt, const StopFlag& stop, const State& state, double& fracture_energy,
                      double& integration, StepReport& report);
   // Finds the plastic strain after a step that ends at `displacements_`.
-  void Flow(double dt);
+  void Flow();
   // J, of moving from `state` to `displacements_` in `dt` (s): where that ends, and half the
   // squared change of velocity.
   struct KineticEnergies {

@@ -137,5 +137,41 @@ TEST_F(EdgeStressTest, InvertedTetsCountAsZero) {
   for (const double stress : EdgeStresses(StressAggregation::kMax, mirrored)) EXPECT_EQ(stress, 0);
 }
 
+TEST_F(EdgeStressTest, OfFlowedTetsIsAlongTheDirectionsThatFlowHasTurned) {
+  // Tets that flow has sheared by `shear` along x over y, then turned by a right angle about z, and
+  // that a small uniaxial stress along y pulls: F_e is 1, so edges lie where flow has put them.
+  constexpr double kShear = 0.75, kPull = 8;  // Pa
+  Matrix3d turn, sheared = Matrix3d::Identity();
+  turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  sheared(0, 1) = kShear;
+  const PlasticTet flowed{turn * sheared, 0};
+  const std::vector<PlasticTet> tets(mesh_.tets.size(), flowed);
+  std::vector<int32_t> records(mesh_.tets.size());
+  for (size_t tet = 0; tet < records.size(); ++tet) records[tet] = static_cast<int32_t>(tet);
+  const PlasticTets plastic{records, tets};
+  Matrix3d pull = Matrix3d::Zero();
+  pull(1, 1) = kPull;
+  const std::vector<Matrix3d> stresses(mesh_.tets.size(), pull);
+  std::vector<Vec3> positions = mesh_.rest_positions;
+  for (Vec3& position : positions) {
+    Eigen::Map<Vector3d> x(position.data());
+    x = (flowed.deformation * x).eval();
+  }
+  for (const StressAggregation aggregation : {StressAggregation::kMean, StressAggregation::kMax}) {
+    EdgeFracture fracture(mesh_, incidence_, Broadcast<double>::Uniform(threshold_),
+                          {.aggregation = aggregation});
+    std::vector<double> found(incidence_.edges.size());
+    fracture.EdgeStresses(positions, stresses, &plastic, found);
+    for (size_t edge = 0; edge < found.size(); ++edge) {
+      const Vector3d rest = At(mesh_.rest_positions, incidence_.edges[edge][1]) -
+                            At(mesh_.rest_positions, incidence_.edges[edge][0]);
+      // F_p (a, b, c) = (-b, a + shear b, c).
+      const double up = rest[0] + kShear * rest[1];
+      const double squares = rest[1] * rest[1] + up * up + rest[2] * rest[2];
+      EXPECT_NEAR(found[edge], kPull * up * up / squares, 1e-13);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cleave

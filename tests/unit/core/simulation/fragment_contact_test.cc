@@ -79,7 +79,7 @@ TEST(FragmentContact, TwoBlocksThatCollideKeepMomentumAndMakeNoEnergy) {
       const StopFlag stop;
       double contact = 0;
       FrameReport report;
-          for (int frame = 0; frame < 0.2 / dt; ++frame) {
+      for (int frame = 0; frame < 0.2 / dt; ++frame) {
         report = *simulation->Advance(stop);
         contact = std::max(contact, report.contact_energy);
         EXPECT_LT(report.kinetic_energy + report.elastic_energy + report.contact_energy,
