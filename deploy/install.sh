@@ -8,6 +8,7 @@ packages=(
   libabsl-dev libeigen3-dev libtbb-dev libzstd-dev libssl-dev libxxhash-dev
   libpugixml-dev zlib1g-dev                 # VTU meshes: XML, compressed arrays
   libcli11-dev                              # verbs and help of the command line
+  libassimp-dev                             # surfaces: OBJ, PLY, STL
   libembree-dev libpng-dev libwebp-dev      # pictures: rays, stills, animations
   python3 python3-grpcio python3-protobuf python3-numpy python3-zstandard    # the Python client
   libgtest-dev libgmock-dev                 # tests

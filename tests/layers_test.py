@@ -57,7 +57,7 @@ ARROWS = {
                    "core/mesh", "core/stream", "zstd.h", POSIX],
     "client/io": ["client/io", "proto/convert", "cleave", "google", "core/scene", "core/mesh",
                   "core/surface", "core/damage", "core/stream", "Eigen", "zlib.h", "zstd.h", "png.h",
-                  "webp", "embree3", "pugixml.hpp", "tbb", POSIX],
+                  "webp", "assimp", "embree3", "pugixml.hpp", "tbb", POSIX],
     "client/cli": ["client/cli", "client/cpp", "client/io", "proto/convert", "cleave", "google",
                    "core/scene", "core/mesh", "core/surface", "core/stream", "core/probe", "CLI",
                    POSIX],

@@ -1,12 +1,15 @@
 #include "client/cli/run_results.h"
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
+#include "client/cli/run_colliders.h"
 #include "client/cli/run_folder.h"
 #include "client/cli/scene_input.h"
 #include "client/io/preview/scene_look.h"
@@ -38,6 +41,12 @@ absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewO
   if (!faults.ok()) return absl::InvalidArgumentError(file.Describe(faults.errors()));
   const std::string title = look.title;
   ApplySceneLook(scene, mesh, look);
+  // Reports may lie elsewhere, with a server of its own; then colliders stay where the scene puts
+  // them.
+  std::ifstream reports(FolderOf(path).reports());
+  std::stringstream lines;
+  lines << reports.rdbuf();
+  look.props = PropsOfRun(scene, lines.str());
   if (!title.empty()) look.title = title;
   return absl::OkStatus();
 }

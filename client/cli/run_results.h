@@ -24,8 +24,9 @@ struct RecordedRun {
 absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::string& mesh_path,
                                             double unit_scale);
 
-// Gives pictures the scene's title, material names and up where the run's folder (or the .clv's)
-// holds its scene; else leaves them as they are.
+// Gives pictures the scene's title, material names, up and colliders where the run's folder (or the
+// .clv's) holds its scene; else leaves them as they are. Colliders are where the folder's reports
+// say.
 absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look);
 
 // Only every `stride`-th frame from `first` to `last` (frame numbers), at most all.

@@ -13,6 +13,7 @@
 #include "client/cpp/rpc_error.h"
 #include "client/io/mesh/file_bytes.h"
 #include "client/io/mesh/mesh_file.h"
+#include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/procedural.h"
@@ -43,6 +44,33 @@ std::string DescribeFaults(const std::string& path, const Faults& faults) {
 void AppendWarnings(const std::string& prefix, const Faults& faults, std::vector<Fault>& all) {
   for (const Fault& warning : faults.warnings())
     all.push_back({absl::StrCat(prefix, warning.field), warning.description});
+}
+
+// Puts what the surface files of colliders hold in the place of their names: servers see no files.
+absl::Status ReadColliderSurfaces(SceneFile& file) {
+  std::vector<Fault> faults;
+  for (int i = 0; i < file.scene.colliders_size(); ++i) {
+    v1::Collider& collider = *file.scene.mutable_colliders(i);
+    if (collider.surface().file().empty()) continue;
+    v1::SurfaceShape& shape = *collider.mutable_surface();
+    const std::string field = absl::StrCat("colliders[", i, "].surface.file");
+    if (shape.vertices_size() > 0 || shape.triangles_size() > 0) {
+      faults.push_back({field, "stands beside vertices or triangles; give one of both"});
+      continue;
+    }
+    const auto surface = ReadSurfaceFile(PathBeside(file, shape.file()));
+    if (!surface.ok()) {
+      faults.push_back({field, std::string(surface.status().message())});
+      continue;
+    }
+    for (const Vec3& vertex : surface->vertices)
+      shape.mutable_vertices()->Add(vertex.begin(), vertex.end());
+    for (const auto& triangle : surface->triangles)
+      shape.mutable_triangles()->Add(triangle.begin(), triangle.end());
+    shape.clear_file();
+  }
+  if (faults.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(file.Describe(faults));
 }
 
 // The rules of the scene alone. A file as mesh stands for the asset that it will be.
@@ -76,6 +104,7 @@ absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
 absl::StatusOr<SceneInput> LoadScene(const std::string& path) {
   SceneInput input;
   CLEAVE_ASSIGN_OR_RETURN(input.file, ReadSceneFile(path));
+  CLEAVE_RETURN_IF_ERROR(ReadColliderSurfaces(input.file));
   CLEAVE_RETURN_IF_ERROR(CheckScene(input));
   const std::string mesh_path = MeshPath(input.file);
   if (mesh_path.empty()) return input;

@@ -280,7 +280,7 @@ struct BoxShape {
 struct SurfaceShape {
   std::vector<Vec3> vertices;                     // m
   std::vector<std::array<int32_t, 3>> triangles;  // of vertices, from 0
-  // A file beside the scene file, in place of both; refused by name until clients read such files.
+  // A file beside the scene file, in place of both. Clients read it; a scene to be run has none.
   std::string file = {};
 };
 using Shape = std::variant<std::monostate, PlaneShape, SphereShape, BoxShape, SurfaceShape>;

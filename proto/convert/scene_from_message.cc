@@ -3,6 +3,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/scene/checker.h"
+#include "core/scene/limits.h"
 #include "proto/convert/scene.h"
 
 namespace cleave {
@@ -344,6 +346,11 @@ class Converter {
         SurfaceShape surface;
         surface.vertices = Vectors(field + ".surface.vertices", from.vertices());
         surface.file = from.file();
+        const double unit_scale = from.has_unit_scale() ? from.unit_scale() : 1;
+        Checker(faults_).Above(field + ".surface.unit_scale", unit_scale, 0, limits::kMaxUnitScale);
+        for (Vec3& vertex : surface.vertices) {
+          for (double& coordinate : vertex) coordinate *= unit_scale;
+        }
         if (from.triangles_size() % 3 != 0) {
           faults_.Error(field + ".surface.triangles",
                         absl::StrCat("has ", from.triangles_size(),
@@ -530,8 +537,8 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
       "fracture.aggregation", message.fracture().aggregation(), 2);
   scene.fracture.reformulation = convert.AfterUnspecified<Reformulation>(
       "fracture.reformulation", message.fracture().reformulation(), 2);
-  scene.quality.precision = convert.AfterUnspecified<Precision>(
-      "quality.precision", message.quality().precision(), 2);
+  scene.quality.precision =
+      convert.AfterUnspecified<Precision>("quality.precision", message.quality().precision(), 2);
   if (message.has_impurities()) scene.impurities = convert.AllImpurities(message.impurities());
   ReadSettings(message, scene, faults);
   scene.seed = message.seed();

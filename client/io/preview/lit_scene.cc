@@ -25,7 +25,8 @@ constexpr int kSkyRays = 2;          // a camera ray
 const Vector3f kSkyTint(0.93f, 0.97f, 1.06f);
 const Vector3f kSunTint(1.04f, 1.0f, 0.94f);
 const Vector3f kGroundAlbedo(0.80f, 0.805f, 0.81f);
-const Vector3f kBackdrop(0.88f, 0.89f, 0.90f);  // what the ground fades into far away
+const Vector3f kPropAlbedo(0.21f, 0.23f, 0.26f);  // steel
+const Vector3f kBackdrop(0.88f, 0.89f, 0.90f);    // what the ground fades into far away
 
 Vector3f ToFloat(const Vec3& v) {
   return Vector3f(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
@@ -52,10 +53,12 @@ void SetRay(const Vector3f& origin, const Vector3f& direction, RTCRay& ray) {
 
 }  // namespace
 
-LitScene::LitScene(RTCDeviceTy* device, const ShownSurface& surface, const Camera& camera,
-                   const RenderStyle& style)
-    : surface_(surface),
-      style_(style),
+LitScene::Solid::Solid(const ShownSurface& of) : surface(of), normals(CornerNormals(of)) {}
+
+LitScene::LitScene(RTCDeviceTy* device, const ShownSurface& surface, const ShownSurface& props,
+                   const Camera& camera, const RenderStyle& style)
+    : body_(surface),
+      props_(props),
       origin_(camera.scene_center),
       eye_(Local(camera.position)),
       right_(ToFloat(camera.right) * static_cast<float>(camera.half_width)),
@@ -73,9 +76,12 @@ LitScene::LitScene(RTCDeviceTy* device, const ShownSurface& surface, const Camer
   const Vector3f side = ToFloat(camera.right);
   sun_ = (ground_up_ + 0.60f * side - 0.62f * level).normalized();
   sun_strength_ = kSunShare / std::max(sun_.dot(ground_up_), 0.1f);
-  normals_ = CornerNormals(surface);
-  BuildColors();
-  BuildGeometry(device);
+  BuildColors(style);
+  scene_ = rtcNewScene(device);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  BuildGeometry(device, body_, 0);
+  BuildGeometry(device, props_, 1);
+  rtcCommitScene(scene_);
 }
 
 LitScene::~LitScene() { rtcReleaseScene(scene_); }
@@ -84,32 +90,30 @@ Vector3f LitScene::Local(const Vec3& point) const {
   return ToFloat({point[0] - origin_[0], point[1] - origin_[1], point[2] - origin_[2]});
 }
 
-void LitScene::BuildGeometry(RTCDeviceTy* device) {
-  scene_ = rtcNewScene(device);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  if (!surface_.triangles.empty()) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
-                                                               RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                               surface_.points.size()));
-    auto* ids = static_cast<uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                3 * sizeof(uint32_t), surface_.triangles.size()));
-    ready_ = points != nullptr && ids != nullptr;
-    if (ready_) {
-      for (const Vec3& point : surface_.points) {
-        const Vector3f local = Local(point);
-        points = std::copy_n(local.data(), 3, points);
-      }
-      for (const auto& triangle : surface_.triangles) {
-        for (const int32_t point : triangle) *ids++ = static_cast<uint32_t>(point);
-      }
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometry(scene_, geometry);
+void LitScene::BuildGeometry(RTCDeviceTy* device, const Solid& solid, uint32_t id) {
+  const ShownSurface& surface = solid.surface;
+  if (surface.triangles.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                             RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                             surface.points.size()));
+  auto* ids = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                             RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
+                                                             surface.triangles.size()));
+  if (points == nullptr || ids == nullptr) {
+    ready_ = false;
+  } else {
+    for (const Vec3& point : surface.points) {
+      const Vector3f local = Local(point);
+      points = std::copy_n(local.data(), 3, points);
     }
-    rtcReleaseGeometry(geometry);
+    for (const auto& triangle : surface.triangles) {
+      for (const int32_t point : triangle) *ids++ = static_cast<uint32_t>(point);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_, geometry, id);
   }
-  rtcCommitScene(scene_);
+  rtcReleaseGeometry(geometry);
 }
 
 Vector3f LitScene::Irradiance(const Hit& hit, uint32_t sample, float& shine) const {
@@ -174,31 +178,35 @@ Vector3f LitScene::Sky(const Vector3f& direction) const {
   return (1 - kSunShare) * (0.82f + 0.27f * height) * kSkyTint;
 }
 
-void LitScene::BuildColors() {
-  if (style_.color_by == ColorBy::kStrain) {
-    point_colors_.reserve(surface_.points.size());
-    for (const float strain : surface_.strains) {
-      point_colors_.push_back(ToLinear(SequentialColor(strain / style_.strain_limit)));
+void LitScene::BuildColors(const RenderStyle& style) {
+  const ShownSurface& surface = body_.surface;
+  props_.colors.assign(props_.surface.triangles.size(), kPropAlbedo);
+  if (style.color_by == ColorBy::kStrain) {
+    body_.point_colors.reserve(surface.points.size());
+    for (const float strain : surface.strains) {
+      body_.point_colors.push_back(ToLinear(SequentialColor(strain / style.strain_limit)));
     }
     return;
   }
-  colors_.reserve(surface_.triangles.size());
-  for (size_t i = 0; i < surface_.triangles.size(); ++i) {
-    const bool inside = surface_.inside[i] != 0;
-    if (style_.color_by == ColorBy::kPiece) {
-      const Vector3f color = ToLinear(PieceColor(surface_.pieces[i]));
-      colors_.push_back(inside ? Vector3f(0.45f * color + Vector3f::Constant(0.42f)) : color);
+  body_.colors.reserve(surface.triangles.size());
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    const bool inside = surface.inside[i] != 0;
+    if (style.color_by == ColorBy::kPiece) {
+      const Vector3f color = ToLinear(PieceColor(surface.pieces[i]));
+      body_.colors.push_back(inside ? Vector3f(0.45f * color + Vector3f::Constant(0.42f)) : color);
     } else {
-      const auto slot = style_.region_slots.find(surface_.regions[i]);
-      const int32_t color = slot == style_.region_slots.end() ? surface_.regions[i] : slot->second;
-      colors_.push_back(ToLinear(inside ? InsideColor(color) : RegionColor(color)));
+      const auto slot = style.region_slots.find(surface.regions[i]);
+      const int32_t color = slot == style.region_slots.end() ? surface.regions[i] : slot->second;
+      body_.colors.push_back(ToLinear(inside ? InsideColor(color) : RegionColor(color)));
     }
   }
 }
 
 Hit LitScene::SurfaceHit(const Vector3f& direction, const RTCRayHit& ray) const {
+  const Solid& solid = ray.hit.geomID == 0 ? body_ : props_;
+  const ShownSurface& surface = solid.surface;
   const size_t triangle = ray.hit.primID;
-  const auto& ids = surface_.triangles[triangle];
+  const auto& ids = surface.triangles[triangle];
   const std::array<float, 3> weights = {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v};
   Hit hit;
   hit.distance = ray.ray.tfar;
@@ -212,19 +220,19 @@ Hit LitScene::SurfaceHit(const Vector3f& direction, const RTCRayHit& ray) const 
   hit.shadow_origin = hit.position;
   Vector3f color = Vector3f::Zero();
   for (size_t k = 0; k < 3; ++k) {
-    const Vector3f normal = turn * normals_[triangle][k];
+    const Vector3f normal = turn * solid.normals[triangle][k];
     shading += weights[k] * normal;
-    const Vector3f corner = Local(surface_.points[static_cast<size_t>(ids[k])]);
+    const Vector3f corner = Local(surface.points[static_cast<size_t>(ids[k])]);
     const float below = std::min(0.0f, (hit.position - corner).dot(normal));
     hit.shadow_origin -= weights[k] * below * normal;
-    if (!point_colors_.empty()) {
-      color += weights[k] * point_colors_[static_cast<size_t>(ids[k])];
+    if (!solid.point_colors.empty()) {
+      color += weights[k] * solid.point_colors[static_cast<size_t>(ids[k])];
     }
   }
-  const bool inside = surface_.inside[triangle] != 0;
+  const bool inside = surface.inside[triangle] != 0;
   hit.shading = shading.squaredNorm() > 1e-8f ? shading.normalized() : hit.normal;
   if (hit.shading.dot(direction) > 0) hit.shading = hit.normal;
-  hit.albedo = point_colors_.empty() ? colors_[triangle] : color;
+  hit.albedo = solid.point_colors.empty() ? solid.colors[triangle] : color;
   hit.gloss = inside ? 0.02f : 0.10f;
   return hit;
 }

@@ -29,19 +29,19 @@ struct Hit {
   float lit = 1;  // how much of the light counts; 0: all backdrop
 };
 
-// A surface on a plain ground under a soft sun and a sky, ready for rays. Const methods are
-// thread-safe. Colours and light are linear; open level ground receives a light of 1.
+// A surface and props on a plain ground under a soft sun and a sky, ready for rays. Const methods
+// are thread-safe. Colours and light are linear; open level ground receives a light of 1.
 class LitScene {
  public:
-  // `device` and the other arguments must outlive this object. Precondition: the surface passed
-  // CheckShownSurface, the style fits it.
-  LitScene(RTCDeviceTy* device, const ShownSurface& surface, const Camera& camera,
-           const RenderStyle& style);
+  // `device` and the other arguments must outlive this object. Precondition: the surfaces passed
+  // CheckShownSurface, the style fits the first.
+  LitScene(RTCDeviceTy* device, const ShownSurface& surface, const ShownSurface& props,
+           const Camera& camera, const RenderStyle& style);
   ~LitScene();
   LitScene(const LitScene&) = delete;
   LitScene& operator=(const LitScene&) = delete;
 
-  // Whether there was memory for the surface.
+  // Whether there was memory for the surfaces.
   bool ready() const { return ready_; }
 
   // What the camera sees at a place of its picture, x and y in [-1, 1], to the right and up.
@@ -52,17 +52,26 @@ class LitScene {
   Eigen::Vector3f Irradiance(const Hit& hit, uint32_t sample, float& shine) const;
 
  private:
+  // A surface and how it looks.
+  struct Solid {
+    explicit Solid(const ShownSurface& of);
+
+    const ShownSurface& surface;
+    std::vector<std::array<Eigen::Vector3f, 3>> normals;  // of corners, a triangle each
+    std::vector<Eigen::Vector3f> colors;                  // a triangle each
+    std::vector<Eigen::Vector3f> point_colors;            // a point each; strain only
+  };
+
   // Single precision is enough about the middle of the scene, wherever that lies.
   Eigen::Vector3f Local(const Vec3& point) const;
-  void BuildColors();
-  void BuildGeometry(RTCDeviceTy* device);
+  void BuildColors(const RenderStyle& style);
+  void BuildGeometry(RTCDeviceTy* device, const Solid& solid, uint32_t id);
   bool Blocked(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
   Eigen::Vector3f Sky(const Eigen::Vector3f& direction) const;
   Hit SurfaceHit(const Eigen::Vector3f& direction, const RTCRayHit& ray) const;
   Hit GroundHit(const Eigen::Vector3f& direction) const;
 
-  const ShownSurface& surface_;
-  const RenderStyle& style_;
+  Solid body_, props_;  // geometries 0 and 1
   RTCSceneTy* scene_ = nullptr;
   bool ready_ = true;
   const Vec3 origin_;  // m, where the middle of the scene is: all that follows counts from it
@@ -73,9 +82,6 @@ class LitScene {
   const float offset_;         // m, from a surface to the start of a ray that leaves it
   Eigen::Vector3f sun_;        // towards it
   float sun_strength_ = 0;
-  std::vector<std::array<Eigen::Vector3f, 3>> normals_;
-  std::vector<Eigen::Vector3f> colors_;        // a triangle each
-  std::vector<Eigen::Vector3f> point_colors_;  // a point each; strain only
 };
 
 }  // namespace cleave

@@ -5,11 +5,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "client/io/preview/camera.h"
 #include "client/io/preview/image.h"
+#include "client/io/preview/props.h"
 #include "client/io/preview/render.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/tet_mesh.h"
@@ -30,6 +32,7 @@ struct PreviewOptions {
   // Of the mesh's region ids; empty: a slot a region, by ascending id, with the mesh's names.
   std::map<int32_t, RegionLook> regions;
   std::optional<double> strain_limit;  // absent: a round number that 1 % of the surface exceeds
+  std::vector<Prop> props;             // colliders, in grey
   CameraOptions camera;
   std::string title;  // of the picture or sheet; may be empty
 };

@@ -98,9 +98,11 @@ absl::StatusOr<Renderer> Renderer::Create() {
 }
 
 absl::StatusOr<Image> Renderer::Render(const ShownSurface& surface, const Camera& camera,
-                                       const RenderStyle& style, int width, int height) {
+                                       const RenderStyle& style, int width, int height,
+                                       const ShownSurface& props) {
   CLEAVE_RETURN_IF_ERROR(CheckRender(surface, style, width, height));
-  const LitScene scene(device_.get(), surface, camera, style);
+  CLEAVE_RETURN_IF_ERROR(CheckShownSurface(props));
+  const LitScene scene(device_.get(), surface, props, camera, style);
   if (const RTCError error = rtcGetDeviceError(device_.get());
       error != RTC_ERROR_NONE || !scene.ready()) {
     return absl::ResourceExhaustedError(

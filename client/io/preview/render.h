@@ -38,10 +38,12 @@ class Renderer {
   static absl::StatusOr<Renderer> Create();
 
   // A picture of `width` x `height` pixels, each 1 to kMaxImageSide. A surface without triangles
-  // gives the bare ground. Errors: InvalidArgument for a bad surface (CheckShownSurface), size or
-  // style; ColorBy::kStrain needs strains.
+  // gives the bare ground. `props` are drawn beside it in one grey, whatever their regions. Errors:
+  // InvalidArgument for a bad surface (CheckShownSurface), size or style; ColorBy::kStrain needs
+  // strains of `surface`.
   absl::StatusOr<Image> Render(const ShownSurface& surface, const Camera& camera,
-                               const RenderStyle& style, int width, int height);
+                               const RenderStyle& style, int width, int height,
+                               const ShownSurface& props = {});
 
  private:
   struct Release {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -15,6 +17,11 @@ void ApplySceneLook(const Scene& scene, const TetMesh& mesh, PreviewOptions& opt
   if (scene.gravity && *scene.gravity != Vec3{0, 0, 0}) {
     const Vec3& gravity = *scene.gravity;
     options.camera.up = Vec3{-gravity[0], -gravity[1], -gravity[2]};
+  }
+  options.props.clear();
+  for (const Collider& collider : scene.colliders) {
+    std::optional<Prop> prop = PropOf(collider.shape);
+    if (prop.has_value()) options.props.push_back(*std::move(prop));
   }
   options.regions.clear();
   const std::vector<int32_t> materials = AssignMaterials(scene.materials, mesh, RegionIndex(mesh));

@@ -8,7 +8,8 @@
 namespace cleave {
 
 // Makes pictures speak the scene's language: its name as title, a colour a material with its name
-// in the legend, up against gravity. Overwrites those options and no others. `mesh` is the scene's.
+// in the legend, up against gravity, and its colliders where the scene puts them, but for planes.
+// Overwrites those options and no others. `mesh` is the scene's.
 void ApplySceneLook(const Scene& scene, const TetMesh& mesh, PreviewOptions& options);
 
 }  // namespace cleave

@@ -101,7 +101,8 @@ absl::StatusOr<Image> Studio::Draw(int64_t position) {
   CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
   CLEAVE_RETURN_IF_ERROR(sequence_.Advance(frame));
   CLEAVE_ASSIGN_OR_RETURN(
-      Image image, renderer_.Render(sequence_.surface(), camera_, style_, options_.width, height_));
+      Image image, renderer_.Render(sequence_.surface(), camera_, style_, options_.width, height_,
+                                    PropsAt(options_.props, frame.frame)));
   const double size = LetterHeight();
   const double margin = 1.3 * size;
   const double baseline = height_ - margin;
@@ -132,10 +133,13 @@ void Studio::DrawHead(Image& image) const {
 }
 
 absl::Status Studio::Prepare() {
-  CLEAVE_ASSIGN_OR_RETURN(const double natural, NaturalAspect(survey_.points, options_.camera));
+  std::vector<Vec3> framed = survey_.points;
+  const std::vector<Vec3> props = PropPointsNear(options_.props, framed);
+  framed.insert(framed.end(), props.begin(), props.end());
+  CLEAVE_ASSIGN_OR_RETURN(const double natural, NaturalAspect(framed, options_.camera));
   height_ = options_.height > 0 ? options_.height
                                 : std::clamp(Round(options_.width / natural), 16, kMaxImageSide);
-  CLEAVE_ASSIGN_OR_RETURN(camera_, FrameCamera(survey_.points, aspect(), options_.camera));
+  CLEAVE_ASSIGN_OR_RETURN(camera_, FrameCamera(framed, aspect(), options_.camera));
   const size_t count = survey_.times.size();
   if (count > 1) {
     step_ = (survey_.times.back() - survey_.times.front()) / static_cast<double>(count - 1);

@@ -109,10 +109,14 @@ absl::StatusOr<MaterialFile> ReadMaterialFile(const std::string& path) {
   return file;
 }
 
+std::string PathBeside(const FileLines& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
+  return (folder / path).lexically_normal().string();
+}
+
 std::string MeshPath(const SceneFile& file) {
   if (file.scene.mesh().file().empty()) return "";
-  const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
-  return (folder / file.scene.mesh().file()).lexically_normal().string();
+  return PathBeside(file, file.scene.mesh().file());
 }
 
 }  // namespace cleave

@@ -53,8 +53,10 @@ absl::StatusOr<SceneFile> ParseScene(absl::string_view text, SceneFormat format,
 // Reads a material file, under the same rules.
 absl::StatusOr<MaterialFile> ReadMaterialFile(const std::string& path);
 
-// Where the scene's mesh.file lies: relative paths count from the scene file's folder. Empty when
-// the scene names no file.
+// Where a path that a file names lies: relative ones count from the file's folder.
+std::string PathBeside(const FileLines& file, const std::string& path);
+
+// Where the scene's mesh.file lies, by PathBeside. Empty when the scene names no file.
 std::string MeshPath(const SceneFile& file);
 
 }  // namespace cleave

@@ -74,6 +74,44 @@ TEST_F(SceneInputTest, ProceduralMeshIsBuiltInMetres) {
   EXPECT_DOUBLE_EQ(largest, 0.5);
 }
 
+TEST_F(SceneInputTest, SurfaceFilesOfCollidersTravelInsideTheScene) {
+  Write("wedge.obj", "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string path =
+      Write("a.scene.json",
+            absl::StrCat(
+                "{\"mesh\": {\"box\": {\"size\": [1, 1, 1], \"resolution\": {\"cell_size\": 0.5}}},"
+                "\"colliders\": [{\"surface\": {\"file\": \"wedge.obj\", \"unit_scale\": 0.1}}], ",
+                kMaterial, "}"));
+  const auto input = LoadScene(path);
+  ASSERT_TRUE(input.ok()) << input.status();
+  EXPECT_EQ(input->file.scene.colliders(0).surface().file(), "");
+  EXPECT_EQ(input->file.scene.colliders(0).surface().triangles_size(), 12);
+  const auto& surface = std::get<SurfaceShape>(input->scene.colliders[0].shape);
+  ASSERT_EQ(surface.vertices.size(), 4u);
+  double largest = 0;
+  for (const Vec3& vertex : surface.vertices) largest = std::max(largest, vertex[0]);
+  EXPECT_DOUBLE_EQ(largest, 1);
+}
+
+TEST_F(SceneInputTest, FaultsOfSurfaceFilesNameFieldAndLine) {
+  Write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto message_of = [&](absl::string_view surface) {
+    const std::string path = Write(
+        "a.scene.json", absl::StrCat("{\"mesh\": {\"box\": {\"size\": [1, 1, 1], \"resolution\":"
+                                     "{\"cell_size\": 0.5}}},\n\"colliders\": [\n{\"surface\": ",
+                                     surface, "}], ", kMaterial, "}"));
+    return std::string(LoadScene(path).status().message());
+  };
+  EXPECT_THAT(message_of("{\"file\": \"none.obj\"}"),
+              testing::AllOf(HasSubstr(":3: colliders[0].surface.file: "), HasSubstr("none.obj")));
+  EXPECT_THAT(message_of("{\"file\": \"open.obj\", \"vertices\": [0, 0, 0]}"),
+              HasSubstr(":3: colliders[0].surface.file: stands beside vertices or triangles"));
+  EXPECT_THAT(message_of("{\"file\": \"open.obj\"}"),
+              HasSubstr("colliders[0].surface.triangles: the surface is not closed"));
+  EXPECT_THAT(message_of("{\"file\": \"open.obj\", \"unit_scale\": 0}"),
+              HasSubstr("colliders[0].surface.unit_scale: 0 is outside (0, "));
+}
+
 TEST_F(SceneInputTest, FaultsFromTheServerGetTheirLines) {
   const auto file = ParseScene("{\n\"seed\": 1}", SceneFormat::kJson, "a.scene.json");
   ASSERT_TRUE(file.ok());

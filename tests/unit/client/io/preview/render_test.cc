@@ -98,6 +98,21 @@ TEST(Render, StrainIsInterpolatedBetweenPoints) {
   EXPECT_GT(image.at(20, 40)[1], image.at(12, 40)[1] + 30);
 }
 
+TEST(Render, PropsAreGreyBesideTheBodyAndHideWhatIsBehindThem) {
+  ShownSurface props = TwoSquares();
+  for (Vec3& point : props.points) {
+    point[0] += 0.6;
+    point[2] += 0.3;
+  }
+  auto renderer = Renderer::Create();
+  ASSERT_TRUE(renderer.ok()) << renderer.status();
+  const auto image = renderer->Render(TwoSquares(), Overhead(), RenderStyle{}, 80, 80, props);
+  ASSERT_TRUE(image.ok()) << image.status();
+  EXPECT_GT(Saturation(image->at(14, 40)), 60);  // the body's left square, uncovered
+  EXPECT_LT(Saturation(image->at(26, 40)), 30);  // behind a prop
+  EXPECT_LT(image->at(26, 40)[0], 160);          // which is darker than the ground
+}
+
 TEST(Render, ABodyThrowsAShadowOnTheGround) {
   const Image bare = Draw(ShownSurface{}, RenderStyle{});
   const Image image = Draw(TwoSquares(), RenderStyle{});

@@ -17,6 +17,9 @@ TEST(SceneLook, RegionsOfOneMaterialShareItsNameAndColor) {
   scene.materials.resize(2);
   scene.materials[0].name = "gel";
   scene.materials[1].regions = {"left", "3"};
+  scene.colliders.resize(2);
+  scene.colliders[0].shape = PlaneShape{};
+  scene.colliders[1].shape = SphereShape{{0, 0, 0}, 1};
   PreviewOptions options;
   options.title = "old";
   options.regions[7].label = "old";
@@ -31,6 +34,7 @@ TEST(SceneLook, RegionsOfOneMaterialShareItsNameAndColor) {
   EXPECT_EQ(options.regions[1].label, "material 1");
   EXPECT_EQ(options.regions[3].label, "material 1");
   EXPECT_EQ(options.regions[3].slot, 1);
+  EXPECT_EQ(options.props.size(), 1u);  // planes are left out
   scene.gravity.reset();
   ApplySceneLook(scene, mesh, options);
   EXPECT_FALSE(options.camera.up.has_value());

@@ -1,0 +1,36 @@
+#ifndef CLEAVE_CLIENT_IO_SURFACE_SURFACE_FILE_H_
+#define CLEAVE_CLIENT_IO_SURFACE_SURFACE_FILE_H_
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "core/base/vec3.h"
+
+namespace cleave {
+
+// Triangles of a surface, in the unit of its file.
+struct SurfaceMesh {
+  std::vector<Vec3> vertices;
+  std::vector<std::array<int32_t, 3>> triangles;  // turning as in the file
+};
+
+// Reads a surface from a .obj, .ply or .stl file, text or binary; all objects and groups of the
+// file are one surface. Polygons become triangles, lines and points are passed over, and vertices
+// at the same place become one, as formats repeat them where normals or materials change.
+// Coordinates have seven digits: the readers are of single precision.
+//
+// Errors name the path: NotFound, PermissionDenied, or InvalidArgument for another ending, a file
+// that cannot be read as what its name says, one without triangles and one with a coordinate that
+// is not finite.
+absl::StatusOr<SurfaceMesh> ReadSurfaceFile(const std::string& path);
+
+// The same for the bytes of a file that was called `name`.
+absl::StatusOr<SurfaceMesh> ParseSurfaceFile(absl::string_view bytes, absl::string_view name);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CLIENT_IO_SURFACE_SURFACE_FILE_H_

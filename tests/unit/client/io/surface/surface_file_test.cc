@@ -1,0 +1,137 @@
+#include "client/io/surface/surface_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace cleave {
+namespace {
+
+using testing::HasSubstr;
+
+// A pyramid of a square and four triangles, the base first.
+constexpr char kObj[] = R"(# two groups, a normal and a texture coordinate
+o pyramid
+v 0 0 0
+v 0 1 0
+v 1 1 0
+v 1 0 0
+v 0.5 0.5 1
+vn 0 0 -1
+vt 0 0
+usemtl below
+f 1/1/1 2/1/1 3/1/1 4/1/1
+g sides
+usemtl sides
+f 1 4 5
+f 4 3 5
+f 3 2 5
+f 2 1 5
+)";
+
+constexpr char kPly[] = R"(ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property float potency
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0 1
+1 0 0 0.5
+0 1 0 0
+0 0 1 0
+3 0 2 1
+3 0 1 3
+3 1 2 3
+3 0 3 2
+)";
+
+constexpr float kTetrahedron[4][3][3] = {{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
+                                         {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}},
+                                         {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                         {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
+
+std::string BinaryStl() {
+  std::string bytes(80, '\0');
+  const uint32_t count = 4;
+  bytes.append(reinterpret_cast<const char*>(&count), 4);
+  for (const auto& triangle : kTetrahedron) {
+    bytes.append(12, '\0');  // a normal, which readers work out
+    bytes.append(reinterpret_cast<const char*>(triangle), sizeof triangle);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+// The volume a closed surface encloses, m^3: positive where triangles turn as seen from outside.
+double Volume(const SurfaceMesh& surface) {
+  double volume = 0;
+  for (const auto& t : surface.triangles) {
+    const Vec3& a = surface.vertices[static_cast<size_t>(t[0])];
+    const Vec3& b = surface.vertices[static_cast<size_t>(t[1])];
+    const Vec3& c = surface.vertices[static_cast<size_t>(t[2])];
+    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+               a[2] * (b[0] * c[1] - b[1] * c[0])) /
+              6;
+  }
+  return volume;
+}
+
+TEST(SurfaceFile, GroupsOfAnObjBecomeOneSurfaceOfTriangles) {
+  const auto surface = ParseSurfaceFile(kObj, "pyramid.OBJ");
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  EXPECT_EQ(surface->vertices.size(), 5u);
+  EXPECT_EQ(surface->triangles.size(), 6u);
+  EXPECT_NEAR(Volume(*surface), 1.0 / 3, 1e-12);
+}
+
+TEST(SurfaceFile, PlyIsRead) {
+  const auto surface = ParseSurfaceFile(kPly, "a.ply");
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  EXPECT_THAT(surface->vertices, testing::UnorderedElementsAre(Vec3{0, 0, 0}, Vec3{1, 0, 0},
+                                                               Vec3{0, 1, 0}, Vec3{0, 0, 1}));
+  EXPECT_NEAR(Volume(*surface), 1.0 / 6, 1e-12);
+}
+
+TEST(SurfaceFile, TrianglesOfAnStlShareTheirVertices) {
+  const auto surface = ParseSurfaceFile(BinaryStl(), "a.stl");
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  EXPECT_EQ(surface->vertices.size(), 4u);
+  EXPECT_EQ(surface->triangles.size(), 4u);
+  EXPECT_NEAR(Volume(*surface), 1.0 / 6, 1e-12);
+}
+
+TEST(SurfaceFile, VerticesThatAreNearButNotEqualStayApart) {
+  const auto surface = ParseSurfaceFile("v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3\n", "speck.obj");
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  EXPECT_EQ(surface->vertices.size(), 3u);
+}
+
+TEST(SurfaceFile, WhatIsNoSurfaceIsRefusedByName) {
+  const auto refused = [](absl::string_view bytes, absl::string_view name) {
+    const absl::Status status = ParseSurfaceFile(bytes, name).status();
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+    return std::string(status.message());
+  };
+  EXPECT_THAT(refused(kObj, "a.fbx"), HasSubstr(".obj, .ply and .stl are"));
+  EXPECT_THAT(refused("", "a.obj"), HasSubstr("cannot be read as OBJ"));
+  EXPECT_THAT(refused("ply\nnot really", "a.ply"), HasSubstr("cannot be read as PLY"));
+  EXPECT_THAT(refused(BinaryStl().substr(0, 150), "a.stl"), HasSubstr("cannot be read as STL"));
+  EXPECT_THAT(refused("v 0 0 0\nv 1 0 0\nl 1 2\n", "a.obj"),
+              testing::AnyOf(HasSubstr("no triangle"), HasSubstr("cannot be read as OBJ")));
+  EXPECT_THAT(refused("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj"),
+              testing::AnyOf(HasSubstr("not a finite number"), HasSubstr("cannot be read as OBJ")));
+}
+
+TEST(SurfaceFile, AMissingFileIsNamed) {
+  const absl::Status status = ReadSurfaceFile(testing::TempDir() + "no_such_surface.obj").status();
+  EXPECT_TRUE(absl::IsNotFound(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("no_such_surface.obj"));
+}
+
+}  // namespace
+}  // namespace cleave
