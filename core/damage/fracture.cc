@@ -31,7 +31,8 @@ double SixVolumes(const std::array<int32_t, 4>& nodes, std::span<const Vec3> pos
 }  // namespace
 
 EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
-                           const EdgeStrengths& strengths, const FractureSettings& settings)
+                           const EdgeStrengths& strengths, const FractureSettings& settings,
+                           const StrandLaws& strands)
     : mesh_(mesh), incidence_(incidence), strengths_(strengths), settings_(settings) {
   const auto tets = static_cast<size_t>(mesh.tet_count());
   const auto edges = static_cast<size_t>(incidence.edge_count());
@@ -53,6 +54,7 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
     }
   }
   BreakPending({}, {});
+  strands_ = strands;
 }
 
 void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
@@ -80,14 +82,26 @@ PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effec
                                    const PlasticTets* plastic) {
   PassResult result;
   plastic_ = plastic;
-  if (min_threshold_ == kUnbreakable) return result;
+  FindFailing(positions, effective_stress, result);
+  if (!strands_.empty()) FindTorn(positions);
+  if (pending_.empty() && torn_.empty()) return result;
+
+  BreakPending(positions, effective_stress);
+  result.broken_edges = new_broken_;
+  result.changed_tets = changed_;
+  return result;
+}
+
+void EdgeFracture::FindFailing(std::span<const Vec3> positions, Stress effective_stress,
+                               PassResult& result) {
+  if (min_threshold_ == kUnbreakable) return;
 
   // No edge of a tet sees more than the norm of its stress.
   const double stress_bound = WeighTets(positions, effective_stress);
   const double exhaustion_bound = plastic_ != nullptr ? WeighStrains() : 0;
   if (stress_bound < min_threshold_ && exhaustion_bound < min_kappa_) {
     result.max_ratio = std::max(stress_bound / min_threshold_, exhaustion_bound / min_kappa_);
-    return result;
+    return;
   }
   if (plastic_ != nullptr) {
     SetRatios<true>(positions, effective_stress);
@@ -99,13 +113,7 @@ PassResult EdgeFracture::BreakPass(std::span<const Vec3> positions, Stress effec
     result.max_ratio = max.value;
     result.max_edge = max.item;
   }
-  if (!(result.max_ratio >= 1)) return result;
-
-  CollectFailing();
-  BreakPending(positions, effective_stress);
-  result.broken_edges = new_broken_;
-  result.changed_tets = changed_;
-  return result;
+  if (result.max_ratio >= 1) CollectFailing();
 }
 
 template <bool kPlastic>
@@ -149,8 +157,9 @@ double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective
       double max_squared = 0;
       for (int64_t tet = block * kBlock; tet < std::min(tets, (block + 1) * kBlock); ++tet) {
         const auto t = static_cast<size_t>(tet);
+        if (loads_[t] == kOut) continue;
         loads_[t] = kNone;
-        if (!(factors_[t] > 0 && SixVolumes(mesh_.tets[t], positions) > 0)) continue;
+        if (!(SixVolumes(mesh_.tets[t], positions) > 0)) continue;
         const double squared = effective_stress[t].squaredNorm();
         loads_[t] = squared >= hot_squared ? kHot : kUpright;
         max_squared = std::max(max_squared, squared);
@@ -191,7 +200,10 @@ EdgeFracture::EdgeLoad EdgeFracture::LoadOf(int32_t edge, std::span<const Vec3> 
   double max_exhaustion = 0;
   for (const int32_t tet : incidence_.edge_tets[edge]) {
     const auto t = static_cast<size_t>(tet);
-    if (!(factors_[t] > 0)) continue;
+    if (loads_[t] == kOut) {
+      if (factors_[t] > 0) return {0, 0};  // a strand holds it
+      continue;
+    }
     volume += rest_volumes_[t];
     const double stress =
         loads_[t] == kNone ? 0 : Project<kPlastic>(directions, t, effective_stress);

@@ -14,6 +14,7 @@
 #include "core/damage/edge_mask.h"
 #include "core/damage/edge_stress.h"
 #include "core/damage/plastic_tet.h"
+#include "core/damage/strands.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
@@ -49,7 +50,7 @@ struct FractureSettings {
   Reformulation reformulation = Reformulation::kUniform;
 };
 
-// A tet whose damage factor fell, or that lost edges where tets are edge-projected.
+// A tet whose damage factor fell, or that lost edges where it is edge-projected or a strand.
 struct ChangedTet {
   int32_t tet;
   double previous_factor;
@@ -83,6 +84,15 @@ struct PassResult {
 // Damage factors never rise and broken edges never mend. A live edge is an unbroken one: the orphan
 // rule breaks an edge when its last live tet dies.
 //
+// Strands, where tets have a law for them: what separation or a hinge would kill becomes a strand
+// instead, and no other damage takes a tet below its residual factor. A strand is live, so that its
+// unbroken edges are no orphans, but it is no part of the solid. Its stress says nothing, for the
+// tet is torn open: its edges count as free of stress, and break with the last strand that has
+// them. It joins no clusters at a node nor dies by them: strands may hang by a node. It dies for
+// good once an unbroken edge of it is longer than its limit times rest length. Whoever gives it
+// energy should give it that of its unbroken edges alone, so that no force crosses a cut: then
+// pieces still are what unbroken edges join. Edges cut before the first step leave no strands.
+//
 // Not thread-safe; loops run on the caller's TBB arena. Results are the same bits for any number of
 // threads. No call but the constructor and Restore allocates once its scratch has grown.
 class EdgeFracture {
@@ -91,14 +101,14 @@ class EdgeFracture {
   // positive. A tensile threshold of 0 is cut here and now. Strengths change later only as
   // LowerThresholds and UpdateThresholds say. simultaneity is in (0, 1].
   EdgeFracture(const TetMesh& mesh, const Incidence& incidence, const EdgeStrengths& strengths,
-               const FractureSettings& settings);
+               const FractureSettings& settings, const StrandLaws& strands = {});
 
-  // One break pass: finds failure ratios; in each connected component of the live mesh breaks every
-  // edge whose ratio is at least max(1, simultaneity * the component's worst ratio); weakens tets;
-  // then applies separation, orphans and hinges until nothing changes. Call it after each solve of
-  // a step until no edge breaks. `positions` (m) has a node each, `effective_stress` (Pa, without
-  // the damage factor) a tet each; stresses of dead tets are not read. NaN breaks nothing.
-  // `plastic` names the ductile tets, where there are any.
+  // One break pass: kills strands beyond their limits; finds failure ratios; in each connected
+  // component of the live mesh breaks every edge whose ratio is at least max(1, simultaneity * the
+  // component's worst ratio); weakens tets; then applies separation, orphans and hinges until
+  // nothing changes. Call it after each solve of a step until no edge breaks. `positions` (m) has a
+  // node each, `effective_stress` (Pa, without the damage factor) a tet each; stresses of dead tets
+  // are not read. NaN breaks nothing. `plastic` names the ductile tets, where there are any.
   PassResult BreakPass(std::span<const Vec3> positions,
                        std::span<const Eigen::Matrix3d> effective_stress,
                        const PlasticTets* plastic = nullptr);
@@ -109,7 +119,7 @@ class EdgeFracture {
   void UpdateThresholds();
 
   // The aggregated stress of every edge, Pa, negative in compression; where the largest counts,
-  // that of tension. 0 for broken edges. `stresses` has an edge each.
+  // that of tension. 0 for broken edges and those of strands. `stresses` has an edge each.
   void EdgeStresses(std::span<const Vec3> positions,
                     std::span<const Eigen::Matrix3d> effective_stress, const PlasticTets* plastic,
                     std::span<double> stresses);
@@ -118,10 +128,17 @@ class EdgeFracture {
   // Edge-projected tets have 1 until they die.
   std::span<const double> damage_factors() const { return factors_; }
   std::span<const EdgeMask> tet_masks() const { return masks_; }
+  bool IsStrand(int32_t tet) const {
+    const auto t = static_cast<size_t>(tet);
+    return loads_[t] == kOut && factors_[t] > 0;
+  }
   // Nonzero for a broken edge; an edge each.
   std::span<const uint8_t> edge_broken() const { return broken_; }
   std::vector<int32_t> BrokenEdges() const;  // ascending
   int64_t broken_edge_count() const { return broken_count_; }
+  // Broken edges and dead tets: grows with any damage, so that in one run equal counts are the same
+  // damage.
+  int64_t damage_count() const { return broken_count_ + dead_count_; }
   // Components of the nodes through unbroken edges (components.h); counted anew after a change.
   int32_t ComponentCount();
 
@@ -141,9 +158,10 @@ class EdgeFracture {
   };
   // What a tet's stress counts for.
   enum TetLoad : uint8_t {
-    kNone,     // dead, or J <= 0
-    kUpright,  // live
-    kHot,      // live, and its stress or strain reaches the smallest threshold: edges may fail
+    kOut,      // dead, or a strand: for good
+    kNone,     // J <= 0
+    kUpright,  // solid
+    kHot,      // solid, and its stress or strain reaches the smallest threshold: edges may fail
   };
 
   // The smallest strength of an edge, Pa.
@@ -162,11 +180,18 @@ class EdgeFracture {
   double RatioOf(int32_t edge, std::span<const Vec3> positions, Stress effective_stress) const;
   template <bool kPlastic>
   void SetRatios(std::span<const Vec3> positions, Stress effective_stress);
+  // Fills `pending_` with the edges that fail, and the ratio and edge of `result`.
+  void FindFailing(std::span<const Vec3> positions, Stress effective_stress, PassResult& result);
   void CollectFailing();
-  // Breaks the edges in `pending_`, weakens their tets and applies the rules to a fixed point.
+  // Fills `torn_` with the strands that are longer than their limit.
+  void FindTorn(std::span<const Vec3> positions);
+  // Breaks the edges in `pending_` and the strands in `torn_`, weakens tets and applies the rules
+  // to a fixed point.
   void BreakPending(std::span<const Vec3> positions, Stress effective_stress);
   void MarkBroken(int32_t edge);
   void Weaken(int32_t tet, double factor);
+  // A rule takes a tet out of the solid: it dies, or is a strand from now on.
+  void LeaveSolid(int32_t tet);
   double UnbrokenShare(int32_t tet, std::span<const Vec3> positions, Stress effective_stress) const;
   void BreakOrphans(int32_t tet);
   void KillHinges(int32_t node);
@@ -183,13 +208,15 @@ class EdgeFracture {
   std::vector<EdgeMask> masks_;       // a tet each
   std::vector<double> factors_;       // a tet each
   int64_t broken_count_ = 0;
+  int64_t dead_count_ = 0;  // tets
+  StrandLaws strands_;
   std::vector<int32_t> components_;  // a node each; of an older state unless components_fresh_
   int32_t component_count_ = 0;
   bool components_fresh_ = false;
 
   // Scratch of a pass.
   const PlasticTets* plastic_ = nullptr;
-  std::vector<TetLoad> loads_;  // a tet each
+  std::vector<TetLoad> loads_;  // a tet each; kOut stays
   std::vector<double> ratios_;  // an edge each
   struct BlockMax {
     double value;
@@ -198,9 +225,10 @@ class EdgeFracture {
   std::vector<BlockMax> block_max_;
   std::vector<double> component_max_;
   std::vector<int32_t> pending_;  // edges about to break
+  std::vector<int32_t> torn_;     // strands about to die
   std::vector<int32_t> new_broken_;
   std::vector<ChangedTet> changed_;
-  std::vector<int32_t> newly_dead_;
+  std::vector<int32_t> newly_out_;  // of the solid, and strands that died
   std::vector<int32_t> touched_tets_;
   std::vector<int32_t> touched_nodes_;
   std::vector<int32_t> cluster_of_;  // of the live tets of one node

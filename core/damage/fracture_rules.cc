@@ -10,6 +10,12 @@
 namespace cleave {
 namespace {
 
+double EdgeLength(const std::array<int32_t, 2>& nodes, std::span<const Vec3> positions) {
+  const Vec3& a = positions[static_cast<size_t>(nodes[0])];
+  const Vec3& b = positions[static_cast<size_t>(nodes[1])];
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
 void SortUnique(std::vector<int32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -31,24 +37,28 @@ void EdgeFracture::BreakPending(std::span<const Vec3> positions, Stress effectiv
   }
   pending_.clear();
   SortUnique(touched_tets_);
+  for (const int32_t tet : torn_) Weaken(tet, 0);
+  torn_.clear();
   for (const int32_t tet : touched_tets_) {
     const auto t = static_cast<size_t>(tet);
-    if (Separated(masks_[t])) {
-      Weaken(tet, 0);
+    if (Separated(masks_[t]) || IsStrand(tet)) {
+      LeaveSolid(tet);
     } else if (settings_.reformulation == Reformulation::kUniform) {
-      Weaken(tet, UnbrokenShare(tet, positions, effective_stress));
+      const double share = UnbrokenShare(tet, positions, effective_stress);
+      const StrandLaw* const strand = strands_.Of(tet);
+      Weaken(tet, strand != nullptr ? std::max(share, strand->residual_factor) : share);
     } else if (factors_[t] > 0) {
       changed_.push_back({tet, factors_[t]});
     }
   }
 
-  // Deaths make orphans and hinges; hinges make deaths; orphans change no live tet. `newly_dead_`
-  // grows while rounds of hinges work through it.
+  // What leaves the solid makes hinges, and orphans where it dies; hinges make more leave; orphans
+  // change no live tet. `newly_out_` grows while rounds of hinges work through it.
   size_t seen = 0;
   for (;;) {
-    for (; seen < newly_dead_.size(); ++seen) {
-      BreakOrphans(newly_dead_[seen]);
-      const std::array<int32_t, 4>& nodes = mesh_.tets[static_cast<size_t>(newly_dead_[seen])];
+    for (; seen < newly_out_.size(); ++seen) {
+      BreakOrphans(newly_out_[seen]);
+      const std::array<int32_t, 4>& nodes = mesh_.tets[static_cast<size_t>(newly_out_[seen])];
       touched_nodes_.insert(touched_nodes_.end(), nodes.begin(), nodes.end());
     }
     if (touched_nodes_.empty()) break;
@@ -56,7 +66,7 @@ void EdgeFracture::BreakPending(std::span<const Vec3> positions, Stress effectiv
     for (const int32_t node : touched_nodes_) KillHinges(node);
     touched_nodes_.clear();
   }
-  newly_dead_.clear();
+  newly_out_.clear();
 
   if (!new_broken_.empty()) components_fresh_ = false;
   std::sort(new_broken_.begin(), new_broken_.end());
@@ -85,7 +95,41 @@ void EdgeFracture::Weaken(int32_t tet, double factor) {
   if (factor >= current) return;
   changed_.push_back({tet, current});
   current = factor < kDeadFactor ? 0 : factor;
-  if (current == 0) newly_dead_.push_back(tet);
+  if (current > 0) return;
+  loads_[static_cast<size_t>(tet)] = kOut;
+  ++dead_count_;
+  newly_out_.push_back(tet);
+}
+
+void EdgeFracture::LeaveSolid(int32_t tet) {
+  const auto t = static_cast<size_t>(tet);
+  const StrandLaw* const strand = strands_.Of(tet);
+  if (strand == nullptr || masks_[t] == kAllEdges) {
+    Weaken(tet, 0);
+    return;
+  }
+  if (!(factors_[t] > 0)) return;
+  changed_.push_back({tet, factors_[t]});
+  factors_[t] = std::min(factors_[t], strand->residual_factor);
+  if (loads_[t] == kOut) return;
+  loads_[t] = kOut;
+  newly_out_.push_back(tet);
+}
+
+void EdgeFracture::FindTorn(std::span<const Vec3> positions) {
+  for (int32_t tet = 0; tet < static_cast<int32_t>(factors_.size()); ++tet) {
+    if (!IsStrand(tet)) continue;
+    const auto t = static_cast<size_t>(tet);
+    const double limit = strands_.Of(tet)->stretch_limit;
+    for (size_t k = 0; k < 6; ++k) {
+      if ((masks_[t] >> k & 1) != 0) continue;
+      const auto& nodes = incidence_.edges[static_cast<size_t>(incidence_.tet_edges[t][k])];
+      if (!(EdgeLength(nodes, positions) > limit * EdgeLength(nodes, mesh_.rest_positions)))
+        continue;
+      torn_.push_back(tet);
+      break;
+    }
+  }
 }
 
 // Eq. 2 as the method note reads it: the share of the absolute edge stresses that unbroken edges
@@ -99,7 +143,7 @@ double EdgeFracture::UnbrokenShare(int32_t tet, std::span<const Vec3> positions,
   for (size_t k = 0; k < 6; ++k) {
     const bool is_unbroken = (masks_[t] >> k & 1) == 0;
     unbroken_edges += is_unbroken ? 1 : 0;
-    if (loads_[t] == kNone) continue;
+    if (loads_[t] <= kNone) continue;
     const auto edge = static_cast<size_t>(incidence_.tet_edges[t][k]);
     const EdgeDirections directions(incidence_.edges[edge], positions, mesh_.rest_positions);
     const double stress =
@@ -123,8 +167,8 @@ void EdgeFracture::BreakOrphans(int32_t tet) {
   }
 }
 
-// Kills the live tets of a node that unbroken edges at it do not join to the largest cluster (by
-// rest volume; of equal ones, that of the lowest tet).
+// Takes out the solid tets of a node that unbroken edges at it do not join to the largest cluster
+// (by rest volume; of equal ones, that of the lowest tet).
 void EdgeFracture::KillHinges(int32_t node) {
   const std::span<const int32_t> tets = incidence_.node_tets[node];
   // Union-find over positions in `tets`, the smallest position of a cluster at its root.
@@ -138,7 +182,7 @@ void EdgeFracture::KillHinges(int32_t node) {
     if (broken_[static_cast<size_t>(edge)] != 0) continue;
     int32_t first = -1;
     for (const int32_t tet : incidence_.edge_tets[edge]) {
-      if (!(factors_[static_cast<size_t>(tet)] > 0)) continue;
+      if (loads_[static_cast<size_t>(tet)] == kOut) continue;
       const auto position = std::lower_bound(tets.begin(), tets.end(), tet) - tets.begin();
       const int32_t root = root_of(static_cast<int32_t>(position));
       if (first < 0) {
@@ -154,7 +198,7 @@ void EdgeFracture::KillHinges(int32_t node) {
   int clusters = 0;
   for (size_t i = 0; i < tets.size(); ++i) {
     const auto tet = static_cast<size_t>(tets[i]);
-    if (!(factors_[tet] > 0)) continue;
+    if (loads_[tet] == kOut) continue;
     const int32_t root = root_of(static_cast<int32_t>(i));
     clusters += root == static_cast<int32_t>(i) ? 1 : 0;
     cluster_of_[i] = root;
@@ -166,7 +210,8 @@ void EdgeFracture::KillHinges(int32_t node) {
       largest = static_cast<int32_t>(i);
   }
   for (size_t i = 0; i < tets.size(); ++i) {
-    if (cluster_of_[i] != largest) Weaken(tets[i], 0);
+    if (cluster_of_[i] != largest && loads_[static_cast<size_t>(tets[i])] != kOut)
+      LeaveSolid(tets[i]);
   }
 }
 

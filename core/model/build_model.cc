@@ -240,6 +240,23 @@ FatiguePart FatigueOf(const std::vector<Material>& materials,
   return part;
 }
 
+// How tets hold on as strands, each by the law of its material.
+StrandPart StrandsOf(const std::vector<Material>& materials,
+                     const std::vector<int32_t>& material_of) {
+  StrandPart part;
+  std::vector<int16_t> law_of;  // a material each
+  for (const Material& material : materials) {
+    law_of.push_back(material.strands ? static_cast<int16_t>(part.laws.size()) : int16_t{-1});
+    if (!material.strands) continue;
+    part.laws.push_back({material.strands->residual_factor, material.strands->stretch_limit});
+  }
+  if (materials.size() == 1) return part;
+  part.tet_laws.reserve(material_of.size());
+  for (const int32_t material : material_of)
+    part.tet_laws.push_back(law_of[static_cast<size_t>(material)]);
+  return part;
+}
+
 // The client's ids of the solver's edges: ranks by the client's node ids.
 std::vector<int32_t> ClientEdges(const Incidence& incidence, const MeshOrder& order) {
   struct Entry {
@@ -397,8 +414,11 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     part.max_passes = scene.fracture.max_passes;
     part.client_edge = ClientEdges(*model.incidence, model.order);
 
-    // Edge-projected damage.
-    if (scene.fracture.reformulation == Reformulation::kEdgeProjected) {
+    // Strands.
+    if (PullsStrands(scene)) part.strands = StrandsOf(scene.materials, material_of);
+
+    // Edge-projected damage, and what strands have of it.
+    if (scene.fracture.reformulation == Reformulation::kEdgeProjected || part.strands) {
       auto term = std::make_unique<EdgeProjectedTerm>(*model.mesh, *model.incidence);
       part.edge_projected = term.get();
       model.tet_terms.push_back(std::move(term));

@@ -56,10 +56,10 @@ void EdgeProjectedTerm::Put(int64_t tet, EdgeMask broken, const Matrix6& moduli,
                  CondenseBrokenEdges(EdgeModuli(CornersOf(mesh_, tet), moduli), broken);
 }
 
-void EdgeProjectedTerm::Weaken(int64_t tet, EdgeMask broken, const Matrix6& moduli, double energy,
-                               const NodalVector& displacements) {
+void EdgeProjectedTerm::Weaken(int64_t tet, EdgeMask broken, const Matrix6& moduli, double factor,
+                               double energy, const NodalVector& displacements) {
   const Tet* const earlier = Get(tet);
-  const double beta = earlier != nullptr ? earlier->beta : 1;
+  const double beta = earlier != nullptr ? std::min(earlier->beta, factor) : factor;
   Put(tet, broken, moduli, beta);
   const double now = TetEnergy(tet, displacements);
   if (now > energy) Put(tet, broken, moduli, beta * std::max(energy, 0.0) / now);

@@ -14,10 +14,11 @@
 namespace cleave {
 
 // The energy of tets that have lost edges but still hang together, where the scene asks for
-// edge-projected damage: psi = beta / 2 e^T A' e over the Green strains e of the unbroken edges,
-// with the broken ones condensed out and beta <= 1 such that energy never rises at a break. Forces
-// lie along unbroken edges, so none crosses a full cut. Such tets are here and not in other terms,
-// whose damage factor for them is 0. Source: method note, section 3.
+// edge-projected damage, and of strands (fracture.h), which need not: psi = beta / 2 e^T A' e over
+// the Green strains e of the unbroken edges, with the broken ones condensed out and beta <= 1 such
+// that energy never rises at a break. Forces lie along unbroken edges, so none crosses a full cut.
+// Such tets are here and not in other terms, whose damage factor for them is 0. Source: method
+// note, section 3.
 class EdgeProjectedTerm final : public TetTerm {
  public:
   // Holds no tet at first. `mesh` and `incidence` must outlive the term.
@@ -25,9 +26,9 @@ class EdgeProjectedTerm final : public TetTerm {
       : mesh_(mesh), incidence_(incidence) {}
 
   // Takes over a tet, or what more broken edges leave of one that it has. `moduli` as AddRestModuli
-  // of the terms add them up. `energy` (J) is what the tet had at these displacements until now:
-  // it has no more from now on. Precondition: `broken` leaves the vertices joined.
-  void Weaken(int64_t tet, EdgeMask broken, const Matrix6& moduli, double energy,
+  // of the terms add them up. beta is `factor`, the tet's damage factor, at most. `energy` (J) is
+  // what the tet had at these displacements until now: it has no more from now on.
+  void Weaken(int64_t tet, EdgeMask broken, const Matrix6& moduli, double factor, double energy,
               const NodalVector& displacements);
   // Takes over a tet with a beta in [0, 1] from an earlier betas().
   void Put(int64_t tet, EdgeMask broken, const Matrix6& moduli, double beta);

@@ -143,8 +143,14 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
       [](const Material& material) { return material.compressive_strength.has_value(); });
   if (crushes)
     add("compressive strength", (uniform && scene.weakenings.empty() ? 1 : edges) * kDouble);
-  if (breaks && scene.fracture.reformulation == Reformulation::kEdgeProjected)
-    add("edge-projected tets", tets * EdgeProjectedTerm::TetBytes());  // at most
+  const bool projects = breaks && scene.fracture.reformulation == Reformulation::kEdgeProjected;
+  const int64_t projected_bytes = tets * EdgeProjectedTerm::TetBytes();  // at most
+  if (projects) add("edge-projected tets", projected_bytes);
+  if (PullsStrands(scene)) {
+    add("strands", (projects ? 0 : projected_bytes) +
+                       (uniform ? 0 : tets * static_cast<int64_t>(sizeof(int16_t))) +
+                       tets * kDouble);  // factors as loads see them
+  }
   if (Tires(scene)) {
     add("fatigue", FatigueDamage::BytesOf(edges) + edges * kDouble +  // stresses
                        (uniform ? 0 : edges * static_cast<int64_t>(sizeof(int16_t))));

@@ -9,6 +9,7 @@
 #include "core/damage/fatigue.h"
 #include "core/damage/fracture.h"
 #include "core/damage/random_graph.h"
+#include "core/damage/strands.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/reorder.h"
 #include "core/mesh/tet_mesh.h"
@@ -37,6 +38,12 @@ struct FatiguePart {
   std::vector<int16_t> edge_laws;  // of an edge each, -1 for none; empty: the first for all
 };
 
+// What a body that pulls strands has besides.
+struct StrandPart {
+  std::vector<StrandLaw> laws;
+  std::vector<int16_t> tet_laws;  // of a tet each, -1 for none; empty: the first for all
+};
+
 // What a body that can break has besides.
 struct FracturePart {
   std::vector<double> edge_thresholds;  // Pa, of tension, an edge each, or one for all
@@ -45,10 +52,11 @@ struct FracturePart {
   FractureSettings settings;
   int32_t max_passes = 60;           // of breaking and solving again, in a step
   std::vector<int32_t> client_edge;  // the client's id of every edge
-  // Which of the tet terms takes over damaged tets, where they are edge-projected.
+  // Which of the tet terms takes over damaged tets where they are edge-projected, and strands.
   EdgeProjectedTerm* edge_projected = nullptr;
   std::optional<ImpurityPart> impurities;
   std::optional<FatiguePart> fatigue;
+  std::optional<StrandPart> strands;
 };
 
 class ColliderTerm;

@@ -29,7 +29,12 @@ inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly diff
 inline constexpr double kMinFatigueExponent = -1;
 inline constexpr double kMaxFatigueExponent = -0.01;
 inline constexpr double kMaxDegradationExponent = 1000;  // strength falls at the last cycle only
-inline constexpr double kMaxDensity = 1e6;               // kg/m^3; osmium has 22 590
+// Of strands: softer ones carry nothing worth solving for, as any tet of such a factor
+// (fracture.h).
+inline constexpr double kMinResidualFactor = 1e-3;
+inline constexpr double kMaxResidualFactor = 0.999;  // at 1 tearing would take nothing
+inline constexpr double kMaxStretchLimit = 100;      // no string of matter reaches it
+inline constexpr double kMaxDensity = 1e6;           // kg/m^3; osmium has 22 590
 
 inline constexpr double kMaxPressure =
     kMaxYoungsModulus;                        // Pa; more crushes any material to nothing
@@ -61,7 +66,7 @@ inline constexpr int64_t kMaxProbeGradients = 1'000;
 inline constexpr int64_t kMaxPullDirections = 16;
 inline constexpr int32_t kMaxProbeSamples = 1'000;
 inline constexpr double kMaxProbeStretch = 1'000;  // St. Venant-Kirchhoff grows with its 4th power
-inline constexpr double kMinProbeStrain = -0.95;  // bars pressed flat have no digits left
+inline constexpr double kMinProbeStrain = -0.95;   // bars pressed flat have no digits left
 inline constexpr double kMaxProbeStrain = 100;
 
 // Enough for any scene drawn by a person. Each selector costs a pass over the nodes.

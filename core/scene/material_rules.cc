@@ -115,6 +115,17 @@ void CheckFatigue(const std::string& field, const Material& material, const Fati
   }
 }
 
+void CheckStrands(const std::string& field, const Material& material, const Strands& strands,
+                  Faults& faults, Checker& check) {
+  check.Within(field + ".residual_factor", strands.residual_factor, limits::kMinResidualFactor,
+               limits::kMaxResidualFactor);
+  check.Above(field + ".stretch_limit", strands.stretch_limit, 1, limits::kMaxStretchLimit);
+  if (!std::isfinite(material.tensile_strength.value_or(INFINITY)))
+    faults.Error(field, "needs a finite tensile_strength: without one nothing tears");
+  if (material.plasticity.has_value())
+    faults.Error(field, "are elastic, but plasticity is set: their rest length would be lost");
+}
+
 }  // namespace
 
 void CheckMaterial(const std::string& field, const Material& material, Faults& faults,
@@ -156,6 +167,8 @@ void CheckMaterial(const std::string& field, const Material& material, Faults& f
   }
   if (material.fatigue.has_value())
     CheckFatigue(at("fatigue"), material, *material.fatigue, faults, check);
+  if (material.strands.has_value())
+    CheckStrands(at("strands"), material, *material.strands, faults, check);
   if (!check.List(at("fibres"), material.fibres.size(), limits::kMaxFibreFamilies)) return;
   for (size_t k = 0; k < material.fibres.size(); ++k)
     CheckFibres(At(at("fibres"), k), material.fibres[k], material.youngs_modulus, faults, check);

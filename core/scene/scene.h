@@ -99,6 +99,15 @@ struct Fatigue {
   double degradation_exponent = 1;
 };
 
+// How a torn solid goes on holding by strings. A tet that its broken edges or a hinge would kill is
+// left with `residual_factor` of the energy of its unbroken edges alone, until one of them is
+// longer than `stretch_limit` times rest length. No force crosses a cut, and pieces are as before
+// what unbroken edges join. Elastic materials only.
+struct Strands {
+  double residual_factor = 0;  // [0.001, 1), which no other damage takes a tet below
+  double stretch_limit = 0;    // > 1
+};
+
 // A material and the regions that it fills. Later materials win where regions overlap.
 struct Material {
   std::string name;
@@ -113,6 +122,7 @@ struct Material {
   std::vector<FibreFamily> fibres;
   std::optional<Plasticity> plasticity;  // absent: elastic until it breaks
   std::optional<Fatigue> fatigue;        // absent: load cycles do not weaken it
+  std::optional<Strands> strands;        // absent: what is torn lets go at once
 };
 
 struct BoxSelector {
@@ -412,6 +422,14 @@ struct Scene {
 inline bool Tires(const Scene& scene) {
   for (const Material& material : scene.materials) {
     if (material.fatigue.has_value()) return true;
+  }
+  return false;
+}
+
+// Whether anything torn holds on by strands.
+inline bool PullsStrands(const Scene& scene) {
+  for (const Material& material : scene.materials) {
+    if (material.strands.has_value()) return true;
   }
   return false;
 }

@@ -195,6 +195,11 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     if (material.fatigue) PutFatigue(*material.fatigue, out);
     out.Put<uint8_t>(material.plasticity.has_value());
     if (material.plasticity) PutPlasticity(*material.plasticity, out);
+    out.Put<uint8_t>(material.strands.has_value());
+    if (material.strands) {
+      out.Put(material.strands->residual_factor);
+      out.Put(material.strands->stretch_limit);
+    }
   }
   out.Put<uint64_t>(scene.node_sets.size());
   for (const NodeSet& set : scene.node_sets) {

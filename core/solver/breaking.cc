@@ -31,6 +31,11 @@ std::optional<RandomGraph> GraphOf(const Model& model) {
                      part.edge_deal);
 }
 
+StrandLaws StrandsOf(const FracturePart& part) {
+  if (!part.strands) return {};
+  return {part.strands->laws, part.strands->tet_laws};
+}
+
 std::optional<FatigueDamage> FatigueOf(const Model& model) {
   if (!model.fracture->fatigue) return std::nullopt;
   const FatiguePart& part = *model.fracture->fatigue;
@@ -44,7 +49,7 @@ Breaking::Breaking(const Model& model)
       graph_(GraphOf(model)),
       fatigue_(FatigueOf(model)),
       fracture_(*model.mesh, *model.incidence, StrengthsOf(*model.fracture, graph_, fatigue_),
-                model.fracture->settings),
+                model.fracture->settings, StrandsOf(*model.fracture)),
       positions_(model.masses.size()),
       stresses_(static_cast<size_t>(model.tet_count())),
       edge_stresses_(fatigue_ ? static_cast<size_t>(model.incidence->edge_count()) : 0) {
@@ -84,16 +89,17 @@ void Breaking::FindStresses(const NodalVector& displacements) {
   }
 }
 
-int64_t Breaking::BreakPass(const NodalVector& displacements) {
+bool Breaking::BreakPass(const NodalVector& displacements) {
   FindStresses(displacements);
   const PlasticTets plastic = {plastic_record_of_, plastic_tets_};
   const PassResult result =
       fracture_.BreakPass(positions_, stresses_, plastic_tets_.empty() ? nullptr : &plastic);
   for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
   if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
-  stresses_are_last_ = result.broken_edges.empty();
   newly_broken_ = result.broken_edges;
-  return static_cast<int64_t>(newly_broken_.size());
+  // A strand may tear whose edges others hold.
+  stresses_are_last_ = result.broken_edges.empty() && result.changed_tets.empty();
+  return !stresses_are_last_;
 }
 
 void Breaking::EndStep(const NodalVector& displacements) {
@@ -111,7 +117,7 @@ void Breaking::EndStep(const NodalVector& displacements) {
 void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
   const double factor = fracture_.damage_factors()[static_cast<size_t>(tet)];
   EdgeProjectedTerm* const projected = model_.fracture->edge_projected;
-  if (projected == nullptr || factor == 0) {
+  if (!IsProjected(tet)) {
     for (const auto& term : model_.tet_terms) term->SetDamageFactor(tet, factor);
     return;
   }
@@ -120,8 +126,8 @@ void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
   for (const auto& term : model_.tet_terms) {
     if (term.get() != projected) term->SetDamageFactor(tet, 0);
   }
-  projected->Weaken(tet, fracture_.tet_masks()[static_cast<size_t>(tet)], RestModuli(tet), energy,
-                    displacements);
+  projected->Weaken(tet, fracture_.tet_masks()[static_cast<size_t>(tet)], RestModuli(tet), factor,
+                    energy, displacements);
 }
 
 Matrix6 Breaking::RestModuli(int32_t tet) const {
@@ -131,16 +137,16 @@ Matrix6 Breaking::RestModuli(int32_t tet) const {
 }
 
 void Breaking::Mark() {
-  // Edges never mend: as many broken edges as at the last mark are the same edges.
-  if (!mark_.empty() && marked_broken_edges_ == fracture_.broken_edge_count()) return;
+  // Nothing mends: as much damage as at the last mark is the same damage.
+  if (!mark_.empty() && marked_damage_ == fracture_.damage_count()) return;
   mark_.clear();
   ByteWriter out(mark_);
   SaveBroken(out);
-  marked_broken_edges_ = fracture_.broken_edge_count();
+  marked_damage_ = fracture_.damage_count();
 }
 
 absl::Status Breaking::RollBack() {
-  if (marked_broken_edges_ == fracture_.broken_edge_count()) return absl::OkStatus();
+  if (marked_damage_ == fracture_.damage_count()) return absl::OkStatus();
   ByteReader in(mark_);
   return LoadBroken(in);
 }
@@ -193,15 +199,33 @@ void Breaking::ResetStrengths() {
   fracture_.UpdateThresholds();
 }
 
+bool Breaking::IsProjected(int32_t tet) const {
+  const FracturePart& part = *model_.fracture;
+  if (part.edge_projected == nullptr) return false;
+  const auto t = static_cast<size_t>(tet);
+  if (!(fracture_.damage_factors()[t] > 0)) return false;
+  const bool is_damaged =
+      part.settings.reformulation == Reformulation::kEdgeProjected && fracture_.tet_masks()[t] != 0;
+  return is_damaged || fracture_.IsStrand(tet);
+}
+
 std::vector<int32_t> Breaking::ProjectedTets() const {
   std::vector<int32_t> tets;
   if (model_.fracture->edge_projected == nullptr) return tets;
-  const auto masks = fracture_.tet_masks();
-  for (size_t tet = 0; tet < masks.size(); ++tet) {
-    if (masks[tet] != 0 && fracture_.damage_factors()[tet] > 0)
-      tets.push_back(static_cast<int32_t>(tet));
+  for (int32_t tet = 0; tet < static_cast<int32_t>(model_.tet_count()); ++tet) {
+    if (IsProjected(tet)) tets.push_back(tet);
   }
   return tets;
+}
+
+std::span<const double> Breaking::SolidFactors() {
+  const std::span<const double> factors = fracture_.damage_factors();
+  if (!model_.fracture->strands) return factors;
+  solid_factors_.assign(factors.begin(), factors.end());
+  for (int32_t tet = 0; tet < static_cast<int32_t>(model_.tet_count()); ++tet) {
+    if (fracture_.IsStrand(tet)) solid_factors_[static_cast<size_t>(tet)] = 0;
+  }
+  return solid_factors_;
 }
 
 void Breaking::ApplyDamage(std::span<const double> betas) {
@@ -232,7 +256,8 @@ int64_t Breaking::bytes() const {
   return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
                               stresses_.size() * sizeof(Eigen::Matrix3d) +
                               plastic_record_of_.size() * sizeof(int32_t) +
-                              plastic_tets_.size() * sizeof(PlasticTet) + mark_.size()) +
+                              plastic_tets_.size() * sizeof(PlasticTet) + mark_.size() +
+                              solid_factors_.size() * sizeof(double)) +
          (graph_ ? graph_->bytes() : 0) + (fatigue_ ? fatigue_->bytes() : 0);
 }
 

@@ -28,8 +28,8 @@ class Breaking {
   explicit Breaking(const Model& model);
 
   // One break pass at these displacements (m); the terms carry the new damage afterwards. Returns
-  // the number of newly broken edges.
-  int64_t BreakPass(const NodalVector& displacements);
+  // whether there is any: edges broke or strands tore.
+  bool BreakPass(const NodalVector& displacements);
 
   // To be called when a step has ended at these displacements (m) and will not be rolled back.
   void EndStep(const NodalVector& displacements);
@@ -44,6 +44,9 @@ class Breaking {
   // The client's ids, ascending.
   std::vector<int32_t> ClientBrokenEdges() const;
   int64_t broken_edge_count() const { return fracture_.broken_edge_count(); }
+  // Of every tet what EdgeFracture::damage_factors says, but 0 for strands, which bear no load from
+  // outside; until the next call.
+  std::span<const double> SolidFactors();
   int64_t ComponentCount() { return fracture_.ComponentCount(); }
   const EdgeFracture& fracture() const { return fracture_; }
 
@@ -58,7 +61,9 @@ class Breaking {
   void Weaken(int32_t tet, const NodalVector& displacements);
   // Hands all damage to the terms; `betas` are those of edge-projected tets, by tet.
   void ApplyDamage(std::span<const double> betas);
-  // Tets that are edge-projected, ascending.
+  // Whether the edge-projected term has a live tet; where the model has that term.
+  bool IsProjected(int32_t tet) const;
+  // Such tets, ascending.
   std::vector<int32_t> ProjectedTets() const;
   Matrix6 RestModuli(int32_t tet) const;
 
@@ -84,7 +89,8 @@ class Breaking {
   std::vector<int32_t> plastic_record_of_;  // a tet each
   std::vector<PlasticTet> plastic_tets_;
   std::string mark_;
-  int64_t marked_broken_edges_ = 0;
+  int64_t marked_damage_ = 0;
+  std::vector<double> solid_factors_;  // where there may be strands, once SolidFactors was called
 };
 
 }  // namespace cleave

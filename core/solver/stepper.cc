@@ -74,10 +74,10 @@ int32_t Stepper::PartCount(double start, double end, const State& state) const {
 }
 
 void Stepper::Prepare(double start, State& state) {
-  if (breaking_ && !model_.node_terms.empty() && damage_told_ != breaking_->broken_edge_count()) {
-    damage_told_ = breaking_->broken_edge_count();
-    for (const auto& term : model_.node_terms)
-      term->SetDamage(breaking_->fracture().damage_factors());
+  if (breaking_ && !model_.node_terms.empty() &&
+      damage_told_ != breaking_->fracture().damage_count()) {
+    damage_told_ = breaking_->fracture().damage_count();
+    for (const auto& term : model_.node_terms) term->SetDamage(breaking_->SolidFactors());
   }
   if (!releases_) return;
   releases_->Update(start, breaking(), state);
@@ -157,7 +157,7 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     {
       ScopedTimer timer(report.fracture_seconds);
       Flow();
-      if (breaking_->BreakPass(displacements_) == 0) return absl::OkStatus();
+      if (!breaking_->BreakPass(displacements_)) return absl::OkStatus();
     }
     for (const auto& term : model_.node_terms)
       term->EdgesBroke(breaking_->newly_broken(), displacements_);

@@ -76,7 +76,7 @@ class Stepper {
   std::optional<Breaking> breaking_;
   std::optional<Releases> releases_;  // where something may be released
   std::vector<uint8_t> fixed_for_;    // State::released that the solver's fixed nodes are of
-  int64_t damage_told_ = -1;          // broken edges of the damage that node terms know; -1: none
+  int64_t damage_told_ = -1;          // count of the damage that node terms know; -1: none
   NodalVector displacements_;         // m, at the end of the step
   double elastic_energy_ = 0;         // J, of the state
 };

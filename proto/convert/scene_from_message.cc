@@ -202,6 +202,10 @@ class Converter {
       if (from.has_flow_rate()) plasticity.flow_rate = from.flow_rate();
       if (from.has_failure_strain()) plasticity.failure_strain = from.failure_strain();
     }
+    if (message.has_strands()) {
+      material.strands =
+          Strands{message.strands().residual_factor(), message.strands().stretch_limit()};
+    }
     return material;
   }
 

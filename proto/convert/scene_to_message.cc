@@ -321,6 +321,10 @@ v1::Material MessageFromMaterial(const Material& material) {
       plasticity->set_failure_strain(*material.plasticity->failure_strain);
     }
   }
+  if (material.strands.has_value()) {
+    message.mutable_strands()->set_residual_factor(material.strands->residual_factor);
+    message.mutable_strands()->set_stretch_limit(material.strands->stretch_limit);
+  }
   return message;
 }
 

@@ -217,7 +217,7 @@ TEST_F(EdgeProjectedTermTest, EnergyNeverRisesAtABreakAndBetaNever) {
     for (int k = 0; k < 3; ++k) {
       mask |= static_cast<EdgeMask>(1u << static_cast<int>(3 * (Draw(99) + 1)));
       if (Separated(mask)) break;
-      term.Weaken(0, mask, moduli_, energy, displacements);
+      term.Weaken(0, mask, moduli_, 1, energy, displacements);
       const double after = term.TetEnergy(0, displacements);
       EXPECT_LE(after, energy * (1 + 1e-14));
       EXPECT_GE(after, 0);

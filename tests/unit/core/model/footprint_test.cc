@@ -9,6 +9,7 @@
 
 #include "core/mesh/incidence.h"
 #include "core/model/build_model.h"
+#include "core/model/edge_projected_term.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/solver/test_scene.h"
 
@@ -110,6 +111,13 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   EXPECT_EQ(Plan(scene).total_bytes, base.total_bytes);
   scene.materials[0].tensile_strength = 1e5;
   EXPECT_EQ(Names(Plan(scene)).back(), "edge-projected tets");
+  EXPECT_EQ(BytesOf(Plan(scene), "strands"), -1);
+  scene.materials[0].strands = Strands{0.1, 2};
+  EXPECT_EQ(Names(Plan(scene)).back(), "strands");
+  EXPECT_EQ(BytesOf(Plan(scene), "strands"), 4000 * 8);
+  scene.fracture.reformulation = Reformulation::kUniform;
+  EXPECT_EQ(BytesOf(Plan(scene), "strands"), 4000 * (8 + EdgeProjectedTerm::TetBytes()));
+  EXPECT_EQ(BytesOf(Plan(scene), "edge-projected tets"), -1);
   scene = minimal;
   scene.materials[0].compressive_strength = 1e5;
   EXPECT_THAT(Names(Plan(scene)), Contains("fracture"));

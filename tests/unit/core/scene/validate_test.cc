@@ -188,6 +188,27 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
          s.materials[0].tensile_strength = 1e5;
          s.materials[0].fatigue = Fatigue{1e6, -0.1, {}, 0};
        }},
+      {"materials[0].strands",
+       [](Scene& s) {
+         s.materials[0].tensile_strength.reset();
+         s.materials[0].strands = Strands{0.1, 2};
+       }},
+      {"materials[0].strands",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].plasticity = Plasticity{.yield_stress = 1e4, .hardening = 1e5};
+         s.materials[0].strands = Strands{0.1, 2};
+       }},
+      {"materials[0].strands.residual_factor",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].strands = Strands{1, 2};
+       }},
+      {"materials[0].strands.stretch_limit",
+       [](Scene& s) {
+         s.materials[0].tensile_strength = 1e5;
+         s.materials[0].strands = Strands{0.1, 1};
+       }},
       {"materials[0].compressive_strength",
        [](Scene& s) { s.materials[0].compressive_strength = 0; }},
       {"node_sets[0].name", [](Scene& s) { s.node_sets[0].name = std::string(500, 'x'); }},

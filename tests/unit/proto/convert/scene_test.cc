@@ -41,6 +41,7 @@ constexpr char kEveryField[] = R"pb(
       endurance_limit: 1e6
       degradation_exponent: 2
     }
+    strands { residual_factor: 0.1 stretch_limit: 1.8 }
     law: ELASTIC_LAW_COROTATED_LINEAR
     fibres {
       stiffness: 1e6
