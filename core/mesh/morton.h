@@ -38,7 +38,6 @@ class MortonCurve {
     return code;
   }
 
- private:
   // The low 21 bits of `x`, two zero bits between each.
   static uint64_t Spread(uint64_t x) {
     x &= 0x1FFFFF;
@@ -50,6 +49,17 @@ class MortonCurve {
     return x;
   }
 
+  // The reverse of Spread: every third bit of `x`.
+  static uint64_t Compact(uint64_t x) {
+    x &= 0x1249249249249249u;
+    x = (x | x >> 2) & 0x10C30C30C30C30C3u;
+    x = (x | x >> 4) & 0x100F00F00F00F00Fu;
+    x = (x | x >> 8) & 0x1F0000FF0000FFu;
+    x = (x | x >> 16) & 0x1F00000000FFFFu;
+    return (x | x >> 32) & 0x1FFFFF;
+  }
+
+ private:
   Vec3 low_;
   double side_;
 };

@@ -12,7 +12,7 @@
 namespace cleave {
 
 absl::StatusOr<FrameDecoder> FrameDecoder::Create(absl::string_view header_bytes,
-                                                  std::span<const Vec3> rest_positions,
+                                                  const StreamMesh& mesh,
                                                   const DecoderLimits& limits) {
   FrameDecoder decoder;
   CLEAVE_ASSIGN_OR_RETURN(decoder.header_, ParseStreamHeader(header_bytes));
@@ -22,12 +22,13 @@ absl::StatusOr<FrameDecoder> FrameDecoder::Create(absl::string_view header_bytes
         absl::StrCat("stream of ", header.node_count, " nodes and ", header.edge_count,
                      " edges is above the limit of ", limits.max_nodes, " and ", limits.max_edges));
   }
-  if (rest_positions.size() != header.node_count ||
-      RestPositionsSha256(rest_positions) != header.rest_sha256) {
-    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
-  }
+  CLEAVE_RETURN_IF_ERROR(CheckStreamMesh(header, mesh));
   decoder.header_bytes_ = std::string(header_bytes);
-  decoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
+  if (header.predictor_id == kPredictorInterpolation) {
+    decoder.interpolation_.emplace(header, mesh);
+  } else {
+    decoder.rest_positions_.assign(mesh.rest_positions.begin(), mesh.rest_positions.end());
+  }
   decoder.frame_.frame = -1;
   return decoder;
 }
@@ -65,7 +66,7 @@ absl::Status FrameDecoder::DecodeTopology(const FrameParts& parts, StreamState& 
   std::string raw;
   for (; section < parts.sections.size() && parts.sections[section].type == expected; ++section) {
     const Section& part = parts.sections[section];
-    if (part.coder != header_.coder_id) {
+    if (part.coder != kCoderZstdPlanes) {
       return absl::UnimplementedError(absl::StrCat("section coder ", part.coder, " is not known"));
     }
     if (part.first != 0 || part.prediction != Prediction::kNone || part.count == 0 ||
@@ -123,6 +124,7 @@ absl::Status FrameDecoder::DecodeChunk(const Section& section, const std::vector
       }
       break;
     case Prediction::kNone:
+    case Prediction::kInterpolation:
       fit = false;
       break;
   }
@@ -171,7 +173,8 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   CLEAVE_ASSIGN_OR_RETURN(const FrameParts parts, SplitFrame(frame_bytes));
   const FrameHeader& frame = parts.header;
   CLEAVE_RETURN_IF_ERROR(CheckBase(frame));
-  if (frame.kind == FrameKind::kKey && rest_tolerance_ != frame.tolerance) {
+  if (frame.kind == FrameKind::kKey && !interpolation_.has_value() &&
+      rest_tolerance_ != frame.tolerance) {
     rest_ = QuantiseRest(rest_positions_, header_.origin,
                          QuantisationStep(frame.tolerance, header_.domain_bound));
     rest_tolerance_ = frame.tolerance;
@@ -187,6 +190,9 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   if (frame.kind == FrameKind::kHold) {
     if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
     next.positions = state_.positions;
+  } else if (interpolation_.has_value()) {
+    CLEAVE_RETURN_IF_ERROR(
+        interpolation_->Decode(frame, std::span(parts.sections).subspan(section), state_, next));
   } else {
     CLEAVE_RETURN_IF_ERROR(DecodePositions(parts, section, next));
   }
@@ -203,19 +209,27 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
   // The state before is now `next`; its positions become the history.
   state_.previous.swap(next.positions);
   state_hash_ = frame.state_hash;
+  if (interpolation_.has_value()) {
+    interpolation_->Accept(frame.kind);
+    state_.has_previous = true;
+    if (frame.kind == FrameKind::kKey) state_.previous = state_.positions;
+  }
 
   frame_.frame = state_.frame;
   frame_.time = state_.time;
   frame_.fragments = state_.fragments;
   frame_.broken_edges = state_.broken_edges;
   frame_.positions.resize(header_.node_count);
-  const double step = QuantisationStep(state_.tolerance, header_.domain_bound);
+  const double unit = header_.UnitOf(state_.tolerance);
   const Vec3 origin = header_.origin;
+  const int32_t* nodes =
+      interpolation_.has_value() ? interpolation_->order().nodes.data() : nullptr;
   ParallelFor(static_cast<int64_t>(header_.node_count), 4096, [&](int64_t begin, int64_t end) {
-    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      const size_t node = nodes == nullptr ? at : static_cast<size_t>(nodes[at]);
       for (size_t axis = 0; axis < 3; ++axis) {
         frame_.positions[node][axis] =
-            origin[axis] + static_cast<double>(state_.positions[3 * node + axis]) * step;
+            origin[axis] + static_cast<double>(state_.positions[3 * at + axis]) * unit;
       }
     }
   });

@@ -2,6 +2,7 @@
 #define CLEAVE_CORE_STREAM_FRAME_DECODER_H_
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,7 +13,9 @@
 #include "core/base/vec3.h"
 #include "core/stream/frame.h"
 #include "core/stream/frame_header.h"
+#include "core/stream/interpolation_decoder.h"
 #include "core/stream/stream_header.h"
+#include "core/stream/stream_mesh.h"
 #include "core/stream/stream_state.h"
 
 namespace cleave {
@@ -28,10 +31,9 @@ struct DecoderLimits {
 // checked before memory is taken for it. Loops run on the current TBB arena. Not thread-safe.
 class FrameDecoder {
  public:
-  // `rest_positions` (m) are those of the mesh that the stream is of, to the bit. Errors: as
+  // `mesh` is that of which the stream is, rest positions to the bit. Errors: as
   // ParseStreamHeader; ResourceExhausted (limits); FailedPrecondition (another mesh).
-  static absl::StatusOr<FrameDecoder> Create(absl::string_view header_bytes,
-                                             std::span<const Vec3> rest_positions,
+  static absl::StatusOr<FrameDecoder> Create(absl::string_view header_bytes, const StreamMesh& mesh,
                                              const DecoderLimits& limits = {});
 
   // Decodes one whole frame. A key frame applies to any state (that is how one seeks), the others
@@ -67,6 +69,7 @@ class FrameDecoder {
   StreamState state_;
   StreamState scratch_;  // where the next frame is decoded, so that a bad one changes nothing
   uint64_t state_hash_ = 0;
+  std::optional<InterpolationDecoder> interpolation_;  // with predictor 2
   Frame frame_;
 };
 

@@ -25,15 +25,13 @@ int ResidualBits(int64_t residual) {
 }  // namespace
 
 absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
-                                                  std::span<const Vec3> rest_positions,
+                                                  const StreamMesh& mesh,
                                                   std::optional<StreamState> state) {
   FrameEncoder encoder;
   encoder.header_bytes_ = SerializeStreamHeader(header);
   CLEAVE_ASSIGN_OR_RETURN(encoder.header_, ParseStreamHeader(encoder.header_bytes_));
-  if (rest_positions.size() != header.node_count ||
-      RestPositionsSha256(rest_positions) != header.rest_sha256) {
-    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
-  }
+  CLEAVE_RETURN_IF_ERROR(CheckStreamMesh(header, mesh));
+  const std::span<const Vec3> rest_positions = mesh.rest_positions;
   encoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
   encoder.tolerance_ = header.tolerance;
   encoder.next_.resize(rest_positions.size() * 3);
@@ -46,6 +44,13 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
     encoder.tolerance_ = state->tolerance;
     encoder.epoch_ = state->epoch;
     encoder.state_ = *std::move(state);
+  }
+  if (header.predictor_id == kPredictorInterpolation) {
+    if (encoder.state_.frame >= 0 && !encoder.state_.has_previous) {
+      return absl::FailedPreconditionError("the state to go on from is of another predictor");
+    }
+    encoder.interpolation_.emplace(header, mesh);
+    return encoder;
   }
   encoder.rest_ = QuantiseRest(encoder.rest_positions_, header.origin,
                                QuantisationStep(encoder.tolerance_, header.domain_bound));
@@ -64,6 +69,7 @@ absl::Status FrameEncoder::StartEpoch(uint32_t epoch) {
 absl::Status FrameEncoder::SetTolerance(double tolerance) {
   CLEAVE_RETURN_IF_ERROR(CheckTolerance(tolerance, header_));
   tolerance_ = tolerance;
+  if (interpolation_.has_value()) return absl::OkStatus();
   rest_ = QuantiseRest(rest_positions_, header_.origin,
                        QuantisationStep(tolerance_, header_.domain_bound));
   return absl::OkStatus();
@@ -104,6 +110,7 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
 }
 
 absl::Status FrameEncoder::Quantise(const std::vector<Vec3>& positions) {
+  if (interpolation_.has_value()) return interpolation_->SetTargets(positions, tolerance_);
   const double inverse_step = 1.0 / QuantisationStep(tolerance_, header_.domain_bound);
   const Vec3 origin = header_.origin;
   constexpr double kLimit = kMaxQuantised;
@@ -144,7 +151,7 @@ void FrameEncoder::AppendTopology(SectionType type, std::span<const int32_t> edg
     const std::string raw = ToGaps(piece);
     const std::string coded = CodeParts(raw, 1);
     AppendSection({.type = type,
-                   .coder = static_cast<uint8_t>(header_.coder_id),
+                   .coder = kCoderZstdPlanes,
                    .raw_bytes = static_cast<uint32_t>(raw.size()),
                    .count = static_cast<uint32_t>(piece.size()),
                    .coded = coded},
@@ -234,12 +241,23 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   header.broken_edges = frame.broken_edges.size();
   header.epoch = epoch_;
   std::string body;
+  const auto append_positions = [&] {
+    if (interpolation_.has_value()) {
+      interpolation_->Encode(key, frame.broken_edges, state_, header, body, next_);
+    } else {
+      AppendPositions(key, header, body);
+    }
+  };
+  const auto all_hold = [&] {
+    return interpolation_.has_value() ? interpolation_->AllHold(state_) : next_ == state_.positions;
+  };
   if (key) {
     header.kind = FrameKind::kKey;
     AppendTopology(SectionType::kTopologyCheckpoint, frame.broken_edges, header, body);
-    AppendPositions(true, header, body);
-  } else if (!breaks && next_ == state_.positions) {
+    append_positions();
+  } else if (!breaks && all_hold()) {
     header.kind = FrameKind::kHold;
+    next_ = state_.positions;
   } else {
     header.kind = FrameKind::kDelta;
     std::vector<int32_t> newly_broken;
@@ -247,7 +265,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
                         state_.broken_edges.begin(), state_.broken_edges.end(),
                         std::back_inserter(newly_broken));
     AppendTopology(SectionType::kTopologyDelta, newly_broken, header, body);
-    AppendPositions(false, header, body);
+    append_positions();
   }
 
   state_.frame = frame.frame;
@@ -260,6 +278,11 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   state_.positions.swap(next_);
   state_.has_previous = !key;
   next_.resize(state_.positions.size());
+  if (interpolation_.has_value()) {
+    interpolation_->Accept(header.kind);
+    state_.has_previous = true;
+    if (key) state_.previous = state_.positions;
+  }
 
   header.state_hash = HashStreamState(header_bytes_, state_);
   header.frame_bytes = kFrameHeaderBytes + body.size();

@@ -12,7 +12,9 @@
 #include "core/base/vec3.h"
 #include "core/stream/frame.h"
 #include "core/stream/frame_header.h"
+#include "core/stream/interpolation_encoder.h"
 #include "core/stream/stream_header.h"
+#include "core/stream/stream_mesh.h"
 #include "core/stream/stream_state.h"
 
 namespace cleave {
@@ -33,9 +35,8 @@ class FrameEncoder {
  public:
   // `state` is that of a FrameDecoder (or encoder) of the same stream, to go on after its last
   // frame as if there had been no break; absent: start with a key frame. Errors: FailedPrecondition
-  // when rest positions or state are not of this stream; InvalidArgument.
-  static absl::StatusOr<FrameEncoder> Create(const StreamHeader& header,
-                                             std::span<const Vec3> rest_positions,
+  // when the mesh or state is not of this stream; InvalidArgument.
+  static absl::StatusOr<FrameEncoder> Create(const StreamHeader& header, const StreamMesh& mesh,
                                              std::optional<StreamState> state = std::nullopt);
 
   // What to write before the first frame.
@@ -44,7 +45,7 @@ class FrameEncoder {
   // Errors, after which the encoder is as before: InvalidArgument for a wrong number of positions,
   // a frame number that does not rise, broken edges that are unsorted, out of range or fewer than
   // before, a time that is not finite; OutOfRange for a coordinate that is NaN, infinite or more
-  // than about 2^31 tolerances from the origin, naming the first such node.
+  // than about 2^31 tolerances (predictor 2: 2^25) from the origin, naming the first such node.
   absl::StatusOr<EncodedFrame> Encode(const Frame& frame);
 
   // Makes the next frame a key frame of this epoch (after a rewind frame numbers may fall). Error:
@@ -73,7 +74,8 @@ class FrameEncoder {
   double tolerance_ = 0;       // m, of the next frame
   uint32_t epoch_ = 0;         // of the next frame
   StreamState state_;
-  std::vector<int32_t> next_;  // quantised positions of the frame in work
+  std::vector<int32_t> next_;                          // quantised positions of the frame in work
+  std::optional<InterpolationEncoder> interpolation_;  // with predictor 2
 };
 
 }  // namespace cleave

@@ -43,6 +43,7 @@ enum class SectionType : uint16_t {
   kTopologyDelta = 1,       // edges that broke since the base frame
   kTopologyCheckpoint = 2,  // all broken edges
   kPositions = 3,           // a chunk of nodes
+  kMotion = 4,              // how predictor 2 predicts the frame: what holds, continuations
 };
 inline constexpr uint16_t kOptionalSection = 0x8000;  // set in a type that readers may skip
 
@@ -50,10 +51,11 @@ inline constexpr uint32_t kMaxTopologyEdges = 262144;  // a section; longer list
 
 // From what a chunk of positions is predicted.
 enum class Prediction : uint8_t {
-  kNone = 0,    // topology
-  kRest = 1,    // the rest positions
-  kLast = 2,    // the base frame
-  kLinear = 3,  // base frame and the one before it, continued
+  kNone = 0,           // topology
+  kRest = 1,           // the rest positions
+  kLast = 2,           // the base frame
+  kLinear = 3,         // base frame and the one before it, continued
+  kInterpolation = 4,  // coarser nodes and their motion: predictor 2
 };
 
 // One section of a frame; `coded` points into the frame's bytes.

@@ -10,6 +10,7 @@
 #include "core/base/faults.h"
 #include "core/base/sha256.h"
 #include "core/base/status.h"
+#include "core/stream/stream_state.h"
 
 namespace cleave {
 namespace {
@@ -27,6 +28,15 @@ double Farthest(const StreamHeader& header) {
         std::max({farthest, std::abs(header.bbox_min[axis]), std::abs(header.bbox_max[axis])});
   }
   return farthest;
+}
+
+bool IsKnown(const StreamHeader& header) {
+  const bool temporal =
+      header.order_id == kOrderClient && header.predictor_id == kPredictorTemporal;
+  const bool interpolation =
+      header.order_id == kOrderMortonLevel && header.predictor_id == kPredictorInterpolation;
+  return header.view_id == kViewState && header.coder_id == kCoderZstdPlanes &&
+         (temporal || interpolation);
 }
 
 void CheckRange(absl::string_view field, double value, double low, double high, Faults& faults) {
@@ -69,13 +79,37 @@ double QuantisationStep(double tolerance, double domain_bound) {
 
 double StreamHeader::step() const { return QuantisationStep(tolerance, domain_bound); }
 
+double StreamHeader::UnitOf(double frame_tolerance) const {
+  const double step = QuantisationStep(frame_tolerance, domain_bound);
+  return predictor_id == kPredictorInterpolation ? step / kUnitsPerStep : step;
+}
+
 absl::Status CheckTolerance(double tolerance, const StreamHeader& header) {
-  const double low = std::max({1e-15, Farthest(header) * 0x1p-30, header.domain_bound * 0x1p-22});
+  // Rest positions must fit the grid.
+  const double finest = header.predictor_id == kPredictorInterpolation ? 0x1p-23 : 0x1p-30;
+  const double low = std::max({1e-15, Farthest(header) * finest, header.domain_bound * 0x1p-22});
   if (!(tolerance >= low && tolerance <= 1e9)) {
     return absl::InvalidArgumentError(
         absl::StrCat("tolerance of ", tolerance, " m is outside [", low, ", 1e9] m"));
   }
   return absl::OkStatus();
+}
+
+absl::Status CheckStreamMesh(const StreamHeader& header, const StreamMesh& mesh) {
+  if (mesh.rest_positions.size() != header.node_count ||
+      RestPositionsSha256(mesh.rest_positions) != header.rest_sha256) {
+    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
+  }
+  if (header.predictor_id != kPredictorInterpolation) return absl::OkStatus();
+  bool fits = mesh.edges.size() == header.edge_count;
+  for (size_t edge = 0; fits && edge < mesh.edges.size(); ++edge) {
+    const std::array<int32_t, 2>& ends = mesh.edges[edge];
+    fits = ends[0] >= 0 && ends[0] < ends[1] &&
+           static_cast<uint64_t>(ends[1]) < header.node_count &&
+           (edge == 0 || mesh.edges[edge - 1] < ends);
+  }
+  return fits ? absl::OkStatus()
+              : absl::FailedPreconditionError("edges are not those of the stream's mesh");
 }
 
 std::string RestPositionsSha256(std::span<const Vec3> rest_positions) {
@@ -96,6 +130,10 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
   header.keyframe_interval = parameters.keyframe_interval;
   header.frames_per_second = parameters.frames_per_second;
   header.tolerance = parameters.tolerance;
+  header.predictor_id = parameters.predictor_id;
+  header.coder_id = parameters.coder_id;
+  header.order_id =
+      parameters.predictor_id == kPredictorInterpolation ? kOrderMortonLevel : kOrderClient;
 
   Faults faults;
   if (!rest_positions.empty()) header.bbox_min = header.bbox_max = rest_positions.front();
@@ -234,11 +272,10 @@ absl::StatusOr<StreamHeader> ParseStreamHeader(absl::string_view bytes) {
     return absl::UnimplementedError(
         absl::StrCat("stream needs features that are not known: 0x", absl::Hex(unknown)));
   }
-  if (header.order_id != kOrderClient || header.predictor_id != kPredictorTemporal ||
-      header.coder_id != kCoderZstdPlanes || header.view_id != kViewState) {
+  if (!IsKnown(header)) {
     return absl::UnimplementedError(absl::StrCat(
         "stream has order ", header.order_id, ", predictor ", header.predictor_id, ", coder ",
-        header.coder_id, ", view ", header.view_id, "; this reader knows 1 of each"));
+        header.coder_id, ", view ", header.view_id, ", which this reader does not know together"));
   }
   Faults faults;
   CheckValues(header, faults);

@@ -9,16 +9,19 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "core/base/vec3.h"
+#include "core/stream/stream_mesh.h"
 
 namespace cleave {
 
 // The ids that FORMAT.md defines. New ones are added there, never redefined.
 inline constexpr uint16_t kFormatMajor = 1;
 inline constexpr uint16_t kFormatMinor = 0;
-inline constexpr uint16_t kOrderClient = 1;        // nodes in the order of the client's mesh
-inline constexpr uint16_t kPredictorTemporal = 1;  // rest, last frame, or linear in time, by chunk
-inline constexpr uint16_t kCoderZstdPlanes = 1;    // zstd over byte planes
-inline constexpr uint16_t kViewState = 1;          // every node and every broken edge
+inline constexpr uint16_t kOrderClient = 1;             // nodes in the order of the client's mesh
+inline constexpr uint16_t kOrderMortonLevel = 2;        // from coarse to fine (node_order.h)
+inline constexpr uint16_t kPredictorTemporal = 1;       // rest, last frame, or linear, by chunk
+inline constexpr uint16_t kPredictorInterpolation = 2;  // from coarser nodes; needs order 2
+inline constexpr uint16_t kCoderZstdPlanes = 1;         // zstd over byte planes
+inline constexpr uint16_t kViewState = 1;               // every node and every broken edge
 inline constexpr uint64_t kKnownRequiredFeatures = 0;
 
 // What holds for a whole stream; FORMAT.md, section "Stream header".
@@ -45,8 +48,10 @@ struct StreamHeader {
   Vec3 bbox_max{};  // m
   Vec3 origin{};    // m, where quantised coordinates are zero
 
-  // The grid on which positions lie: a coordinate is origin + integer * step.
+  // The grid on which positions lie: a coordinate is origin + integer * unit. For predictor 1 the
+  // unit is a step, for predictor 2 a 64th of one.
   double step() const;
+  double UnitOf(double tolerance) const;
 };
 
 // What the maker of a stream chooses.
@@ -58,6 +63,8 @@ struct StreamParameters {
   uint32_t keyframe_interval = 24;  // frames, [1, 1e6]
   double frames_per_second = 24;    // [1e-3, 1e9]
   uint32_t chunk_nodes = 16384;     // [1, 65536]; 16384 keeps every section below 256 KiB
+  uint16_t predictor_id = kPredictorTemporal;
+  uint16_t coder_id = kCoderZstdPlanes;
 };
 
 // Fills a header for a body with these rest positions (m), choosing the origin (centre of the
@@ -66,7 +73,8 @@ struct StreamParameters {
 // times the body's farthest coordinate, or as much of that as costs the grid at most a sixteenth of
 // its step; where even the body itself costs an eighth or more, it is 0 and nothing is promised
 // (the tolerance is finer than float32 there). Errors: InvalidArgument that names every field at
-// fault; the tolerance must be in [1e-15, 1e9] m and at least 2^-30 of the farthest coordinate.
+// fault; the tolerance must be in [1e-15, 1e9] m and at least 2^-30 (predictor 2: 2^-23) of the
+// farthest coordinate.
 absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters,
                                               std::span<const Vec3> rest_positions);
 
@@ -86,6 +94,10 @@ std::string RestPositionsSha256(std::span<const Vec3> rest_positions);
 
 // The grid step for a tolerance (m) that may differ from the header's; FORMAT.md, "Quantisation".
 double QuantisationStep(double tolerance, double domain_bound);
+
+// OK when a stream with this header is of this mesh: the rest positions' digest, and for predictor
+// 2 the number of edges and that they ascend as FORMAT.md numbers them. Error: FailedPrecondition.
+absl::Status CheckStreamMesh(const StreamHeader& header, const StreamMesh& mesh);
 
 // OK when a stream of these rest positions may use the tolerance.
 absl::Status CheckTolerance(double tolerance, const StreamHeader& header);

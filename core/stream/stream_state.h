@@ -18,9 +18,10 @@ struct StreamState {
   double time = 0;       // s
   double tolerance = 0;  // m, of the grid that the integers are on
   int64_t fragments = 0;
-  // Quantised coordinates, x, y, z of each node; FORMAT.md, "Quantisation".
+  // Quantised coordinates, x, y, z of each node in the stream's order; FORMAT.md, "Quantisation".
   std::vector<int32_t> positions;
-  // The same a frame before; only valid when has_previous: not after a key frame.
+  // The same a frame before; only valid when has_previous. After a key frame there is none for
+  // predictor 1, and predictor 2 takes the key frame's own.
   std::vector<int32_t> previous;
   bool has_previous = false;
   std::vector<int32_t> broken_edges;  // ascending
@@ -28,6 +29,9 @@ struct StreamState {
 
 // Coordinates stay within this, so that a linear continuation and its residual fit.
 inline constexpr int32_t kMaxQuantised = (1 << 30) - 1;
+
+// Residuals of predictor 2 are whole steps, its coordinates 64ths of a step.
+inline constexpr int32_t kUnitsPerStep = 64;
 
 // XXH3-64 of the stream header's bytes and the state; FORMAT.md, "State hash".
 uint64_t HashStreamState(absl::string_view header_bytes, const StreamState& state);

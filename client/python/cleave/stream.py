@@ -1,10 +1,11 @@
 """Decodes Cleave's frame streams, as core/stream/FORMAT.md specifies them.
 
-Needs numpy and zstandard. A stream holds no mesh: give its rest positions (metres, float64).
+Needs numpy and zstandard. A stream holds no mesh: give its rest positions (metres, float64) and
+edges (edges_of makes them of tets).
 
     with open("run.clv", "rb") as file:
         stream = StreamFile(file.read())
-    decoder = FrameDecoder(stream.header_bytes, rest_positions)
+    decoder = FrameDecoder(stream.header_bytes, rest_positions, edges_of(tets))
     for row in stream.rows:
         decoder.apply(stream.frame_bytes(row))
         print(decoder.frame, decoder.time, decoder.positions.shape, len(decoder.broken_edges))
@@ -19,13 +20,15 @@ import numpy as np
 import zstandard
 
 from cleave.checksums import crc32c, xxh3_64
+from cleave.interpolation import UNITS_PER_STEP, Motion, Predictor
 
 MAX_QUANTISED = 2**30 - 1
 MAX_TOPOLOGY_EDGES = 262144
 
 KEY, DELTA, HOLD = 1, 2, 3
-_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS = 1, 2, 3
-_REST, _LAST, _LINEAR = 1, 2, 3
+_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION = 1, 2, 3, 4
+_REST, _LAST, _LINEAR, _INTERPOLATION = 1, 2, 3, 4
+_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1))  # order, predictor, coder, view
 
 
 class StreamError(Exception):
@@ -53,6 +56,8 @@ class StreamHeader:
     nodes: int
     edges: int
     tets: int
+    predictor: int
+    coder: int
     chunk_nodes: int
     keyframe_interval: int
     tolerance: float
@@ -99,9 +104,16 @@ class StreamHeader:
                 raise DamagedError("stream header has a truncated extension")
             if not kind & 0x8000:
                 raise UnsupportedError(f"stream header extension {kind} is required, not known")
-        if ids != (1, 1, 1, 1):
-            raise UnsupportedError(f"order, predictor, coder, view are {ids}; known: 1 of each")
-        header = cls(*values[7:12], *values[16:21], values[21:24], values[24:27], values[27:30])
+        if ids not in _KNOWN_IDS:
+            raise UnsupportedError(f"order, predictor, coder, view are {ids}: not known together")
+        header = cls(
+            *values[7:12],
+            *ids[1:3],
+            *values[16:21],
+            values[21:24],
+            values[24:27],
+            values[27:30],
+        )
         header._check()
         return header
 
@@ -126,12 +138,14 @@ class StreamHeader:
     def allows(self, tolerance):
         """True if frames of this stream may have the tolerance."""
         farthest = max(abs(x) for x in self.bbox_min + self.bbox_max)
-        low = max(1e-15, farthest * 2.0**-30, self.domain_bound * 2.0**-22)
+        finest = 2.0**-23 if self.predictor == 2 else 2.0**-30
+        low = max(1e-15, farthest * finest, self.domain_bound * 2.0**-22)
         return low <= tolerance <= 1e9
 
-    def step(self, tolerance):
-        """Grid step (m) for a frame's tolerance: FORMAT.md section 4."""
-        return 2.0 * (tolerance - self.domain_bound * 2.0**-24) * (1.0 - 2.0**-16)
+    def unit(self, tolerance):
+        """Grid unit (m) for a frame's tolerance: FORMAT.md section 4."""
+        step = 2.0 * (tolerance - self.domain_bound * 2.0**-24) * (1.0 - 2.0**-16)
+        return step / UNITS_PER_STEP if self.predictor == 2 else step
 
 
 @dataclasses.dataclass(frozen=True)
@@ -212,7 +226,7 @@ def split_frame(data):
         if checksum != crc32c(data[at : at + 20] + coded):
             raise DamagedError("a section fails its checksum")
         at += 24 + size
-        if kind in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS):
+        if kind in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION):
             sections.append(_Section(kind, coder, prediction, raw, first, count, coded))
         elif not kind & 0x8000:
             raise UnsupportedError(f"section type {kind} is not known")
@@ -228,7 +242,7 @@ class FrameDecoder:
     broken_edges (ascending int32) and state_hash are of that frame.
     """
 
-    def __init__(self, header_bytes, rest_positions, max_nodes=64_000_000):
+    def __init__(self, header_bytes, rest_positions, edges=None, max_nodes=64_000_000):
         self.header = StreamHeader.parse(bytes(header_bytes))
         if self.header.nodes > max_nodes:
             raise StreamError(f"stream of {self.header.nodes} nodes is above {max_nodes}")
@@ -240,6 +254,11 @@ class FrameDecoder:
             raise WrongStateError("rest positions are not those of the stream's mesh")
         self._header_bytes = bytes(header_bytes)
         self._rest = rest
+        self._predictor = None
+        if self.header.predictor == 2:
+            edges = _checked_edges(edges, self.header)
+            self._predictor = Predictor(rest, edges)
+            self._rest = rest[self._predictor.order.nodes]
         self._previous = None
         self._quantised = None
         self._tolerance = None
@@ -255,19 +274,25 @@ class FrameDecoder:
         """Decodes one whole frame and returns its header."""
         header, sections = split_frame(bytes(data))
         self._check_base(header)
-        topology = [s for s in sections if s.type != _POSITIONS]
-        chunks = sections[len(topology) :]
+        topology = [s for s in sections if s.type in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT)]
+        if sections[: len(topology)] != topology:
+            raise DamagedError("topology sections stand behind others")
+        others = sections[len(topology) :]
+        broken = self._decode_topology(header, topology)
         if header.kind == HOLD:
             if sections:
                 raise DamagedError("a hold frame has sections")
             quantised = self._quantised
+        elif self._predictor is not None:
+            quantised = self._interpolate(header, others, broken)
         else:
-            quantised = self._decode_positions(header, chunks)
-        broken = self._decode_topology(header, topology)
+            quantised = self._decode_positions(header, others)
         if header.state_hash != self._hash(header, quantised, broken):
             raise DamagedError(f"frame {header.frame} fails its state hash")
 
-        self._previous = None if header.kind == KEY else self._quantised
+        self._previous = self._quantised
+        if header.kind == KEY:
+            self._previous = None if self._predictor is None else quantised
         self._quantised = quantised
         self._tolerance = header.tolerance
         self.frame = header.frame
@@ -276,8 +301,12 @@ class FrameDecoder:
         self.fragments = header.fragments
         self.broken_edges = broken
         self.state_hash = header.state_hash
-        step = self.header.step(header.tolerance)
-        self.positions = np.asarray(self.header.origin) + quantised.astype("f8") * step
+        unit = self.header.unit(header.tolerance)
+        positions = np.asarray(self.header.origin) + quantised.astype("f8") * unit
+        if self._predictor is not None:
+            by_place, positions = positions, np.empty_like(positions)
+            positions[self._predictor.order.nodes] = by_place
+        self.positions = positions
         return header
 
     def _check_base(self, header):
@@ -327,8 +356,7 @@ class FrameDecoder:
         if len(chunks) != -(-nodes // chunk_nodes):
             raise DamagedError("frame lacks positions or has too many")
         if header.kind == KEY:
-            step = self.header.step(header.tolerance)
-            predictions = {_REST: np.floor((self._rest - self.header.origin) / step + 0.5)}
+            predictions = {_REST: self._quantised_rest(header)}
         else:
             predictions = {_LAST: self._quantised}
             if self._previous is not None:
@@ -347,16 +375,65 @@ class FrameDecoder:
                 or chunk.prediction not in predictions
             ):
                 raise DamagedError("positions section does not fit its frame")
-            raw = np.frombuffer(_decode_parts(chunk, planes), "u1").reshape(planes, 3, count)
-            zigzag = np.zeros((3, count), "i8")
-            for plane in range(planes):
-                zigzag |= raw[plane].astype("i8") << (8 * plane)
-            residuals = (zigzag >> 1) ^ -(zigzag & 1)
-            values = predictions[chunk.prediction][first : first + count].astype("i8") + residuals.T
+            residuals = _residuals_of_planes(chunk, planes, count)
+            values = predictions[chunk.prediction][first : first + count].astype("i8") + residuals
             if np.abs(values).max() > MAX_QUANTISED:
                 raise DamagedError("a decoded coordinate is out of range")
             quantised[first : first + count] = values
         return quantised
+
+    def _quantised_rest(self, header):
+        unit = self.header.unit(header.tolerance)
+        return np.floor((self._rest - self.header.origin) / unit + 0.5)
+
+    def _interpolate(self, header, sections, broken):
+        """FORMAT.md sections 6.4 and 6.5."""
+        nodes, chunk_nodes = self.header.nodes, self.header.chunk_nodes
+        stencils, groups = self._predictor.stencils, len(self._predictor.order.begins) - 1
+        if len(sections) != 1 + -(-nodes // chunk_nodes):
+            raise DamagedError("frame lacks positions or has too many")
+        stencils.set_broken(broken)
+        pieces = len(stencils.leaders)
+        motion = sections[0]
+        if (
+            (motion.type, motion.prediction, motion.first) != (_MOTION, 0, 0)
+            or motion.count != groups
+            or not 1 <= motion.raw_bytes <= 1 + (pieces + 7) // 8 + 7 * groups
+        ):
+            raise DamagedError("motion section does not fit its frame")
+        try:
+            motion = Motion(_decode_parts(motion, 1), header.kind == KEY, pieces, groups)
+        except ValueError as error:
+            raise DamagedError(str(error)) from error
+
+        moving = ~motion.holds[stencils.piece]
+        residuals = np.zeros((nodes, 3), "i8")
+        for index, chunk in enumerate(sections[1:]):
+            first = index * chunk_nodes
+            count = min(chunk_nodes, nodes - first)
+            coded = np.flatnonzero(moving[first : first + count]) + first
+            planes, rest = divmod(chunk.raw_bytes, max(3 * len(coded), 1))
+            if (
+                (chunk.type, chunk.prediction) != (_POSITIONS, _INTERPOLATION)
+                or (chunk.first, chunk.count) != (first, count)
+                or rest != 0
+                or planes > 4
+            ):
+                raise DamagedError("positions section does not fit its frame")
+            residuals[coded] = _residuals_of_planes(chunk, planes, len(coded))
+        before = None if self._previous is None else self._previous.astype("i8")
+        last = None if self._quantised is None else self._quantised.astype("i8")
+        q = self._predictor.decode(
+            header.kind == KEY,
+            motion,
+            residuals,
+            self._quantised_rest(header).astype("i8"),
+            last,
+            before,
+        )
+        if np.abs(q).max() > MAX_QUANTISED:
+            raise DamagedError("a decoded coordinate is out of range")
+        return q.astype("<i4")
 
     def _hash(self, header, quantised, broken):
         fields = struct.pack(
@@ -369,6 +446,35 @@ class FrameDecoder:
             len(broken),
         )
         return xxh3_64(self._header_bytes + fields + quantised.tobytes() + broken.tobytes())
+
+
+def edges_of(tets):
+    """The edges of tets (node ids, 4 a row) as Cleave numbers them: FORMAT.md section 1."""
+    tets = np.asarray(tets, "i8").reshape(-1, 4)
+    corners = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
+    pairs = np.concatenate([tets[:, list(pair)] for pair in corners])
+    return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def _checked_edges(edges, header):
+    edges = np.empty((0, 2), "i8") if edges is None else np.asarray(edges, "i8").reshape(-1, 2)
+    keys = edges[:, 0] << 32 | edges[:, 1]
+    fits = len(edges) == header.edges and (np.diff(keys) > 0).all()
+    if fits and len(edges) > 0:
+        fits = edges[:, 0].min() >= 0 and edges[:, 1].max() < header.nodes
+        fits = fits and (edges[:, 0] < edges[:, 1]).all()
+    if not fits:
+        raise WrongStateError("edges are not those of the stream's mesh")
+    return edges
+
+
+def _residuals_of_planes(section, planes, count):
+    """Byte planes (FORMAT.md section 6.3) to residuals, count x 3."""
+    raw = np.frombuffer(_decode_parts(section, planes), "u1").reshape(planes, 3, count)
+    zigzag = np.zeros((3, count), "i8")
+    for plane in range(planes):
+        zigzag |= raw[plane].astype("i8") << (8 * plane)
+    return ((zigzag >> 1) ^ -(zigzag & 1)).T
 
 
 def _decode_parts(section, parts):
@@ -422,7 +528,7 @@ def _from_gaps(raw, count):
 
 @dataclasses.dataclass(frozen=True)
 class IndexRow:
-    """FORMAT.md section 8."""
+    """FORMAT.md section 9."""
 
     frame: int
     epoch: int

@@ -51,16 +51,29 @@ std::string FixHeader(std::string header) {
   return header;
 }
 
-class Damage : public ::testing::Test {
+// The ids of a stream.
+struct Ids {
+  uint16_t predictor;
+  uint16_t coder;
+};
+
+class Damage : public ::testing::TestWithParam<Ids> {
  protected:
-  void SetUp() override {
-    StreamParameters parameters = Parameters(40, 1e-3, 4);
+  StreamParameters WithIds(double tolerance) const {
+    StreamParameters parameters = Parameters(body_.edges.size(), tolerance, 4);
     parameters.chunk_nodes = 16;
-    FrameEncoder encoder = MakeEncoder(parameters, rest_);
+    parameters.predictor_id = GetParam().predictor;
+    parameters.coder_id = GetParam().coder;
+    return parameters;
+  }
+  Frame FrameOf(int64_t number) const {
+    return SwingingFrame(body_.rest, number, body_.edges.size());
+  }
+  void SetUp() override {
+    FrameEncoder encoder = MakeEncoder(WithIds(1e-3), body_.mesh());
     header_ = encoder.header_bytes();
     for (int64_t number = 0; number < 8; ++number) {
-      Frame frame = SwingingFrame(rest_, number, 40);
-      if (number == 3) frame = SwingingFrame(rest_, 2, 40);  // holds
+      Frame frame = FrameOf(number == 3 ? 2 : number);  // 3 holds
       frame.frame = number;
       frames_.push_back(encoder.Encode(frame)->bytes);
     }
@@ -68,7 +81,7 @@ class Damage : public ::testing::Test {
   }
 
   FrameDecoder DecoderBefore(size_t frame) const {
-    FrameDecoder decoder = MakeDecoder(header_, rest_);
+    FrameDecoder decoder = MakeDecoder(header_, body_.mesh());
     for (size_t at = frame / 4 * 4; at < frame; ++at) EXPECT_TRUE(decoder.Apply(frames_[at]).ok());
     return decoder;
   }
@@ -98,12 +111,12 @@ class Damage : public ::testing::Test {
     ASSERT_EQ(decoder.frame().positions, shown.positions);
   }
 
-  const std::vector<Vec3> rest_ = RandomBody(40);
+  const Body body_ = LatticeBody(5, 4, 2);
   std::string header_;
   std::vector<std::string> frames_;
 };
 
-TEST_F(Damage, TruncationAtEveryByteIsRefused) {
+TEST_P(Damage, TruncationAtEveryByteIsRefused) {
   for (const size_t frame : {0, 2, 3, 7}) {
     FrameDecoder decoder = DecoderBefore(frame);
     for (size_t size = 0; size < frames_[frame].size(); ++size) {
@@ -114,7 +127,7 @@ TEST_F(Damage, TruncationAtEveryByteIsRefused) {
   }
 }
 
-TEST_F(Damage, EveryFlippedBitIsRefused) {
+TEST_P(Damage, EveryFlippedBitIsRefused) {
   for (const size_t frame : {0, 2, 3, 7}) {
     FrameDecoder decoder = DecoderBefore(frame);
     for (size_t bit = 0; bit < 8 * frames_[frame].size(); ++bit) {
@@ -127,11 +140,11 @@ TEST_F(Damage, EveryFlippedBitIsRefused) {
   for (size_t bit = 0; bit < 8 * header_.size(); ++bit) {
     std::string damaged = header_;
     damaged[bit / 8] ^= static_cast<char>(1 << bit % 8);
-    EXPECT_FALSE(FrameDecoder::Create(damaged, rest_).ok()) << bit;
+    EXPECT_FALSE(FrameDecoder::Create(damaged, body_.mesh()).ok()) << bit;
   }
 }
 
-TEST_F(Damage, FramesInAWrongPlaceAreRefused) {
+TEST_P(Damage, FramesInAWrongPlaceAreRefused) {
   // What comes after frame `at` but is not frame at + 1; key frames apply anywhere.
   for (size_t at = 0; at < frames_.size(); ++at) {
     for (size_t other = 0; other < frames_.size(); ++other) {
@@ -140,11 +153,11 @@ TEST_F(Damage, FramesInAWrongPlaceAreRefused) {
       EXPECT_EQ(decoder.Apply(frames_[other]).code(), absl::StatusCode::kFailedPrecondition);
     }
   }
-  FrameDecoder fresh = MakeDecoder(header_, rest_);
+  FrameDecoder fresh = MakeDecoder(header_, body_.mesh());
   EXPECT_EQ(fresh.Apply(frames_[1]).code(), absl::StatusCode::kFailedPrecondition);
 }
 
-TEST_F(Damage, FramesOfAnotherEpochToleranceOrStreamAreRefused) {
+TEST_P(Damage, FramesOfAnotherEpochToleranceOrStreamAreRefused) {
   FrameDecoder decoder = DecoderBefore(2);
   std::string forged = frames_[2];
   Store<uint32_t>(forged, 72, 9);  // epoch
@@ -156,12 +169,11 @@ TEST_F(Damage, FramesOfAnotherEpochToleranceOrStreamAreRefused) {
   EXPECT_EQ(decoder.Apply(forged).code(), absl::StatusCode::kFailedPrecondition);
 
   // The same body at another tolerance: the state hash covers the stream header.
-  FrameEncoder encoder = MakeEncoder(Parameters(40, 2e-3, 4), rest_);
-  EXPECT_EQ(decoder.Apply(encoder.Encode(SwingingFrame(rest_, 0, 40))->bytes).code(),
-            absl::StatusCode::kDataLoss);
+  FrameEncoder encoder = MakeEncoder(WithIds(2e-3), body_.mesh());
+  EXPECT_EQ(decoder.Apply(encoder.Encode(FrameOf(0))->bytes).code(), absl::StatusCode::kDataLoss);
 }
 
-TEST_F(Damage, ForgeriesWithRightChecksumsAreRefusedOrRight) {
+TEST_P(Damage, ForgeriesWithRightChecksumsAreRefusedOrRight) {
   for (const size_t frame : {0, 1, 2, 3, 6, 7}) {
     FrameDecoder decoder = DecoderBefore(frame);
     const std::string& original = frames_[frame];
@@ -194,7 +206,7 @@ TEST_F(Damage, ForgeriesWithRightChecksumsAreRefusedOrRight) {
   }
 }
 
-TEST_F(Damage, CountsThatNobodyCouldMeanCostNothing) {
+TEST_P(Damage, CountsThatNobodyCouldMeanCostNothing) {
   for (const size_t at : {4u, 8u, 12u, 56u, 60u}) {  // sections, frame bytes, broken edges
     std::string forged = frames_[0];
     Store<uint32_t>(forged, at, 0xFFFFFFFF);
@@ -215,21 +227,28 @@ TEST_F(Damage, CountsThatNobodyCouldMeanCostNothing) {
     for (const uint64_t count : {uint64_t{0xFFFFFFFF}, ~uint64_t{0}, uint64_t{1} << 31}) {
       std::string forged = header_;
       Store(forged, at, count);
-      EXPECT_FALSE(FrameDecoder::Create(FixHeader(forged), rest_).ok());
+      EXPECT_FALSE(FrameDecoder::Create(FixHeader(forged), body_.mesh()).ok());
     }
   }
 }
 
-TEST_F(Damage, ACompressionBombIsRefusedBeforeItGoesOff) {
+TEST_P(Damage, ACompressionBombIsRefusedBeforeItGoesOff) {
   const std::string zeros(64 << 20, '\0');
   const std::string bomb = CodeParts(zeros, 1);
   ASSERT_LT(bomb.size(), 10000u);
   for (const uint32_t raw_bytes : {48u, 3u * 16 * 4, 64u << 20}) {
     std::string body;
+    if (GetParam().predictor == kPredictorInterpolation) {
+      const Section motion = SplitFrame(frames_[0])->sections[0];
+      ASSERT_EQ(motion.type, SectionType::kMotion);
+      AppendSection(motion, body);
+    }
     for (uint32_t first = 0; first < 40; first += 16) {
       AppendSection({.type = SectionType::kPositions,
-                     .coder = 1,
-                     .prediction = Prediction::kRest,
+                     .coder = static_cast<uint8_t>(GetParam().coder),
+                     .prediction = GetParam().predictor == kPredictorInterpolation
+                                       ? Prediction::kInterpolation
+                                       : Prediction::kRest,
                      .raw_bytes = raw_bytes,
                      .first = first,
                      .count = std::min(16u, 40 - first),
@@ -237,16 +256,16 @@ TEST_F(Damage, ACompressionBombIsRefusedBeforeItGoesOff) {
                     body);
     }
     FrameHeader header = *ParseFrameHeader(frames_[0]);
-    header.section_count = 3;
+    header.section_count = GetParam().predictor == kPredictorInterpolation ? 4 : 3;
     header.frame_bytes = kFrameHeaderBytes + body.size();
     std::string frame;
     AppendFrameHeader(header, frame);
-    FrameDecoder decoder = MakeDecoder(header_, rest_);
+    FrameDecoder decoder = MakeDecoder(header_, body_.mesh());
     EXPECT_EQ(decoder.Apply(frame + body).code(), absl::StatusCode::kDataLoss);
   }
 }
 
-TEST_F(Damage, SectionsThatAreNotKnownAreSkippedOnlyIfOptional) {
+TEST_P(Damage, SectionsThatAreNotKnownAreSkippedOnlyIfOptional) {
   std::string extended = frames_[1];
   const auto add = [&](uint16_t type) {
     AppendSection({.type = static_cast<SectionType>(type), .coder = 77, .coded = "later"},
@@ -267,9 +286,9 @@ TEST_F(Damage, SectionsThatAreNotKnownAreSkippedOnlyIfOptional) {
   EXPECT_EQ(StreamFileReader::Open(file)->rows().size(), 2u);
 }
 
-TEST_F(Damage, StreamsOfLaterVersionsAreReadOnlyIfTheyCanBe) {
+TEST_P(Damage, StreamsOfLaterVersionsAreReadOnlyIfTheyCanBe) {
   const auto open = [this](const std::string& header) {
-    return FrameDecoder::Create(FixHeader(header), rest_).status().code();
+    return FrameDecoder::Create(FixHeader(header), body_.mesh()).status().code();
   };
   std::string later = header_;
   Store<uint16_t>(later, 6, 3);  // minor
@@ -282,7 +301,7 @@ TEST_F(Damage, StreamsOfLaterVersionsAreReadOnlyIfTheyCanBe) {
   EXPECT_EQ(open(later), absl::StatusCode::kOk);
   for (const size_t at : {16u, 120u, 122u, 124u, 126u}) {  // required features, ids
     later = header_;
-    later[at] = 2;
+    later[at] = 9;
     EXPECT_EQ(open(later), absl::StatusCode::kUnimplemented) << at;
   }
   const auto extended = [this](uint16_t type, uint32_t length) {
@@ -301,6 +320,12 @@ TEST_F(Damage, StreamsOfLaterVersionsAreReadOnlyIfTheyCanBe) {
   Store<double>(later, 136, std::numeric_limits<double>::quiet_NaN());  // tolerance
   EXPECT_EQ(open(later), absl::StatusCode::kInvalidArgument);
 }
+
+INSTANTIATE_TEST_SUITE_P(Ids, Damage, ::testing::Values(Ids{1, 1}, Ids{2, 1}),
+                         [](const ::testing::TestParamInfo<Ids>& ids) {
+                           return "Predictor" + std::to_string(ids.param.predictor) + "Coder" +
+                                  std::to_string(ids.param.coder);
+                         });
 
 }  // namespace
 }  // namespace cleave

@@ -1,12 +1,27 @@
 #ifndef CLEAVE_TESTS_UNIT_CORE_STREAM_GOLDEN_SCENE_H_
 #define CLEAVE_TESTS_UNIT_CORE_STREAM_GOLDEN_SCENE_H_
 
+#include <cstddef>
+#include <cstdint>
+
 namespace cleave::stream_test {
 
-// What golden/temporal_zstd.* holds: 90 nodes in chunks of 60; frames 0 to 9 of epoch 0, then 7 to
-// 9 of epoch 1, the last of them at a finer tolerance. Key frames every 5; frame 3 holds.
+// The streams in golden/, one for every combination of ids that the format has had. Each has frames
+// 0 to 9 of epoch 0, then 7 to 9 of epoch 1, the last of them at a finer tolerance. Key frames
+// every 5; frame 3 holds.
+struct GoldenStream {
+  const char* name;
+  uint16_t predictor_id;
+  uint16_t coder_id;
+  int nodes;
+  size_t broken_edges;  // after the last frame
+};
+inline constexpr GoldenStream kGoldenStreams[] = {
+    {"temporal_zstd", 1, 1, 90, 150},
+    {"interpolation_zstd", 2, 1, 200, 1015},
+};
+
 inline constexpr char kGoldenDirectory[] = CLEAVE_SOURCE_DIR "/tests/unit/core/stream/golden/";
-inline constexpr int kGoldenNodes = 90;
 inline constexpr int kGoldenFrames = 13;
 inline constexpr double kGoldenTolerance = 1e-3;       // m
 inline constexpr double kGoldenFinerTolerance = 1e-4;  // m

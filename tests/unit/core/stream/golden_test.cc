@@ -30,37 +30,51 @@ std::vector<Vec3> Positions(const std::string& raw) {
   return positions;
 }
 
-TEST(GoldenStream, DecodesAsItDidWhenItWasWritten) {
-  const std::string bytes = Load("temporal_zstd.clv");
-  const std::string expected = Load("temporal_zstd.expected");
-  const std::vector<Vec3> rest = Positions(Load("temporal_zstd.rest"));
-  const BufferAccess file(bytes);
-  const auto reader = StreamFileReader::Open(file);
-  ASSERT_TRUE(reader.ok()) << reader.status();
-  EXPECT_TRUE(reader->has_footer());
-  ASSERT_EQ(reader->rows().size(), static_cast<size_t>(kGoldenFrames));
-  FrameDecoder decoder = MakeDecoder(reader->header_bytes(), rest);
+std::vector<std::array<int32_t, 2>> Edges(const std::string& raw) {
+  std::vector<std::array<int32_t, 2>> edges(raw.size() / 8);
+  std::memcpy(edges.data(), raw.data(), raw.size());
+  return edges;
+}
 
-  std::string kinds;
-  std::string decoded;
-  const size_t frame_bytes = rest.size() * sizeof(Vec3);
-  for (size_t at = 0; at < reader->rows().size(); ++at) {
-    const auto frame_data = reader->ReadFrame(at);
-    ASSERT_TRUE(frame_data.ok()) << frame_data.status();
-    const absl::Status applied = decoder.Apply(*frame_data);
-    ASSERT_TRUE(applied.ok()) << applied;
-    kinds += "?KDH"[static_cast<int>(reader->rows()[at].kind)];
-    Frame original;
-    original.positions = Positions(expected.substr(at * frame_bytes, frame_bytes));
-    const double tolerance = at == 12 ? kGoldenFinerTolerance : kGoldenTolerance;
-    EXPECT_LE(WorstErrors(original, decoder.frame()).as_double, tolerance) << at;
-    EXPECT_LE(WorstErrors(original, decoder.frame()).as_float, tolerance) << at;
-    decoded.append(reinterpret_cast<const char*>(decoder.frame().positions.data()), frame_bytes);
+TEST(GoldenStreams, DecodeAsTheyDidWhenTheyWereWritten) {
+  for (const GoldenStream& golden : kGoldenStreams) {
+    SCOPED_TRACE(golden.name);
+    const std::string name = golden.name;
+    const std::string bytes = Load(name + ".clv");
+    const std::string expected = Load(name + ".expected");
+    const std::vector<Vec3> rest = Positions(Load(name + ".rest"));
+    std::vector<std::array<int32_t, 2>> edges;
+    if (golden.predictor_id == kPredictorInterpolation) edges = Edges(Load(name + ".edges"));
+    const BufferAccess file(bytes);
+    const auto reader = StreamFileReader::Open(file);
+    ASSERT_TRUE(reader.ok()) << reader.status();
+    EXPECT_TRUE(reader->has_footer());
+    ASSERT_EQ(reader->rows().size(), static_cast<size_t>(kGoldenFrames));
+    FrameDecoder decoder = MakeDecoder(reader->header_bytes(), {rest, edges});
+    EXPECT_EQ(decoder.header().predictor_id, golden.predictor_id);
+    EXPECT_EQ(decoder.header().coder_id, golden.coder_id);
+
+    std::string kinds;
+    std::string decoded;
+    const size_t frame_bytes = rest.size() * sizeof(Vec3);
+    for (size_t at = 0; at < reader->rows().size(); ++at) {
+      const auto frame_data = reader->ReadFrame(at);
+      ASSERT_TRUE(frame_data.ok()) << frame_data.status();
+      const absl::Status applied = decoder.Apply(*frame_data);
+      ASSERT_TRUE(applied.ok()) << applied;
+      kinds += "?KDH"[static_cast<int>(reader->rows()[at].kind)];
+      Frame original;
+      original.positions = Positions(expected.substr(at * frame_bytes, frame_bytes));
+      const double tolerance = at == 12 ? kGoldenFinerTolerance : kGoldenTolerance;
+      EXPECT_LE(WorstErrors(original, decoder.frame()).as_double, tolerance) << at;
+      EXPECT_LE(WorstErrors(original, decoder.frame()).as_float, tolerance) << at;
+      decoded.append(reinterpret_cast<const char*>(decoder.frame().positions.data()), frame_bytes);
+    }
+    EXPECT_EQ(kinds, "KDDHDKDDDDKDK");
+    EXPECT_EQ(decoder.epoch(), 1u);
+    EXPECT_EQ(decoder.frame().broken_edges.size(), golden.broken_edges);
+    EXPECT_EQ(Sha256::Of(decoded), Load(name + ".decoded_sha256"));
   }
-  EXPECT_EQ(kinds, "KDDHDKDDDDKDK");
-  EXPECT_EQ(decoder.epoch(), 1u);
-  EXPECT_EQ(decoder.frame().broken_edges.size(), 150u);
-  EXPECT_EQ(Sha256::Of(decoded), Load("temporal_zstd.decoded_sha256"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_UNIT_CORE_STREAM_STREAM_FIXTURE_H_
 #define CLEAVE_TESTS_UNIT_CORE_STREAM_STREAM_FIXTURE_H_
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -28,6 +30,40 @@ inline std::vector<Vec3> RandomBody(size_t nodes, uint64_t seed = 1) {
     for (size_t axis = 0; axis < 3; ++axis) rest[node][axis] = Random(seed, node, axis);
   }
   return rest;
+}
+
+// Nodes and the edges between them.
+struct Body {
+  std::vector<Vec3> rest;
+  std::vector<std::array<int32_t, 2>> edges;
+
+  StreamMesh mesh() const { return {rest, edges}; }
+};
+
+// A jittered lattice, its cells cut into six tets each.
+inline Body LatticeBody(int x_nodes, int y_nodes, int z_nodes) {
+  Body body;
+  for (int x = 0; x < x_nodes; ++x) {
+    for (int y = 0; y < y_nodes; ++y) {
+      for (int z = 0; z < z_nodes; ++z) {
+        const auto node = static_cast<int32_t>(body.rest.size());
+        const auto jitter = [node](uint64_t axis) {
+          return 0.02 * Random(5, static_cast<uint64_t>(node), axis);
+        };
+        body.rest.push_back({0.1 * x + jitter(0), 0.1 * y + jitter(1), 0.1 * z + jitter(2)});
+        for (int corner = 1; corner < 8; ++corner) {
+          const int dx = corner >> 2;
+          const int dy = corner >> 1 & 1;
+          const int dz = corner & 1;
+          if (x + dx < x_nodes && y + dy < y_nodes && z + dz < z_nodes) {
+            body.edges.push_back({node, node + (dx * y_nodes + dy) * z_nodes + dz});
+          }
+        }
+      }
+    }
+  }
+  std::sort(body.edges.begin(), body.edges.end());
+  return body;
 }
 
 inline StreamParameters Parameters(uint64_t edges, double tolerance, uint32_t keyframe_interval) {
@@ -60,16 +96,16 @@ inline Frame SwingingFrame(const std::vector<Vec3>& rest, int64_t frame, uint64_
   return out;
 }
 
-inline FrameEncoder MakeEncoder(const StreamParameters& parameters, const std::vector<Vec3>& rest) {
-  absl::StatusOr<StreamHeader> header = MakeStreamHeader(parameters, rest);
+inline FrameEncoder MakeEncoder(const StreamParameters& parameters, const StreamMesh& mesh) {
+  absl::StatusOr<StreamHeader> header = MakeStreamHeader(parameters, mesh.rest_positions);
   EXPECT_TRUE(header.ok()) << header.status();
-  absl::StatusOr<FrameEncoder> encoder = FrameEncoder::Create(*header, rest);
+  absl::StatusOr<FrameEncoder> encoder = FrameEncoder::Create(*header, mesh);
   EXPECT_TRUE(encoder.ok()) << encoder.status();
   return *std::move(encoder);
 }
 
-inline FrameDecoder MakeDecoder(const std::string& header, const std::vector<Vec3>& rest) {
-  absl::StatusOr<FrameDecoder> decoder = FrameDecoder::Create(header, rest);
+inline FrameDecoder MakeDecoder(const std::string& header, const StreamMesh& mesh) {
+  absl::StatusOr<FrameDecoder> decoder = FrameDecoder::Create(header, mesh);
   EXPECT_TRUE(decoder.ok()) << decoder.status();
   return *std::move(decoder);
 }

@@ -14,15 +14,28 @@ GOLDEN = pathlib.Path(__file__).resolve().parent / "golden"
 TOLERANCES = [1e-3] * 12 + [1e-4]  # m, by frame
 
 
-class GoldenStreamTest(unittest.TestCase):
+class GoldenTests:
+    """What holds for each of the golden streams."""
+
+    NAME = ""
+
+    def load(self, kind):
+        return (GOLDEN / f"{self.NAME}.{kind}").read_bytes()
+
+    def new_decoder(self):
+        return stream.FrameDecoder(self.file.header_bytes, self.rest, self.edges)
+
     def setUp(self):
-        self.data = (GOLDEN / "temporal_zstd.clv").read_bytes()
+        self.data = self.load("clv")
         self.file = stream.StreamFile(self.data)
-        self.rest = np.frombuffer((GOLDEN / "temporal_zstd.rest").read_bytes()).reshape(-1, 3)
-        self.decoder = stream.FrameDecoder(self.file.header_bytes, self.rest)
+        self.rest = np.frombuffer(self.load("rest")).reshape(-1, 3)
+        self.edges = None
+        if self.file.header.predictor == 2:
+            self.edges = np.frombuffer(self.load("edges"), "<i4").reshape(-1, 2)
+        self.decoder = self.new_decoder()
 
     def test_every_frame_decodes_to_the_same_bits_as_in_cpp(self):
-        expected = np.frombuffer((GOLDEN / "temporal_zstd.expected").read_bytes())
+        expected = np.frombuffer(self.load("expected"))
         expected = expected.reshape(len(TOLERANCES), -1, 3)
         digest = hashlib.sha256()
         self.assertTrue(self.file.has_footer)
@@ -33,9 +46,7 @@ class GoldenStreamTest(unittest.TestCase):
             for decoded in (self.decoder.positions, self.decoder.positions.astype("f4")):
                 self.assertLessEqual(np.abs(decoded - positions).max(), tolerance)
             digest.update(self.decoder.positions.astype("<f8").tobytes())
-        self.assertEqual(
-            digest.digest(), (GOLDEN / "temporal_zstd.decoded_sha256").read_bytes()
-        )
+        self.assertEqual(digest.digest(), self.load("decoded_sha256"))
 
     def test_seeking_equals_decoding_straight(self):
         for position in (7, 3, 12, 0, 11):
@@ -83,7 +94,20 @@ class GoldenStreamTest(unittest.TestCase):
         with self.assertRaises(stream.WrongStateError):
             self.decoder.apply(self.file.frame_bytes(self.file.rows[1]))
         with self.assertRaises(stream.WrongStateError):
-            stream.FrameDecoder(self.file.header_bytes, self.rest + 1e-12)
+            stream.FrameDecoder(self.file.header_bytes, self.rest + 1e-12, self.edges)
+
+
+class TemporalZstdTest(GoldenTests, unittest.TestCase):
+    NAME = "temporal_zstd"
+
+
+class InterpolationZstdTest(GoldenTests, unittest.TestCase):
+    NAME = "interpolation_zstd"
+
+    def test_a_mesh_with_other_edges_is_refused(self):
+        for edges in (None, self.edges[:-1], self.edges[::-1], self.edges + 1):
+            with self.assertRaises(stream.WrongStateError):
+                stream.FrameDecoder(self.file.header_bytes, self.rest, edges)
 
 
 class ChecksumsTest(unittest.TestCase):

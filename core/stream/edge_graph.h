@@ -1,0 +1,42 @@
+#ifndef CLEAVE_CORE_STREAM_EDGE_GRAPH_H_
+#define CLEAVE_CORE_STREAM_EDGE_GRAPH_H_
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/stream/node_order.h"
+
+namespace cleave {
+
+// Which places share an edge, with a mark on the broken ones inside the lists.
+class EdgeGraph {
+ public:
+  // Precondition: node ids of edges are in range.
+  EdgeGraph(const NodeOrder& order, std::span<const std::array<int32_t, 2>> edges);
+
+  // The places that share an edge with `place`, ascending; that of a broken edge as ~place, which
+  // is negative.
+  std::span<const int32_t> Neighbours(int32_t place) const {
+    const auto begin = static_cast<size_t>(offsets_[static_cast<size_t>(place)]);
+    const auto end = static_cast<size_t>(offsets_[static_cast<size_t>(place) + 1]);
+    return {slots_.data() + begin, end - begin};
+  }
+  // The two ends of an edge, as places.
+  std::array<int32_t, 2> Ends(int32_t edge) const;
+
+  void Break(int32_t edge);
+  void Heal();  // every edge
+
+  int32_t places() const { return static_cast<int32_t>(offsets_.size()) - 1; }
+
+ private:
+  std::vector<int32_t> offsets_;
+  std::vector<int32_t> slots_;
+  std::vector<std::array<int32_t, 2>> edge_slots_;  // where each edge stands in slots_
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_EDGE_GRAPH_H_

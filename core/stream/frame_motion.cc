@@ -1,0 +1,101 @@
+#include "core/stream/frame_motion.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "core/base/bytes.h"
+#include "core/base/status.h"
+#include "core/stream/section_coder.h"
+
+namespace cleave {
+namespace {
+
+constexpr uint8_t kSomeHold = 1;
+
+// Continuations that take one byte: the detail stays, goes on as it went, half so, is that at rest.
+constexpr std::array<Continuation, 4> kNamed = {
+    {{64, 0, 0}, {128, -64, 0}, {96, -32, 0}, kFromRest}};
+constexpr auto kListed = static_cast<uint8_t>(kNamed.size());
+
+size_t LargestMotion(int64_t pieces, int64_t groups) {
+  return 1 + (static_cast<size_t>(pieces) + 7) / 8 + 7 * static_cast<size_t>(groups);
+}
+
+}  // namespace
+
+void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHeader& header,
+                  std::string& body) {
+  std::string raw;
+  ByteWriter writer(raw);
+  writer.Put<uint8_t>(motion.held.empty() ? 0 : kSomeHold);
+  for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
+    unsigned bits = 0;
+    for (size_t bit = 0; bit < std::min<size_t>(8, motion.held.size() - piece); ++bit) {
+      bits |= (motion.held[piece + bit] ? 1u : 0u) << bit;
+    }
+    writer.Put(static_cast<uint8_t>(bits));
+  }
+  if (!key) {
+    for (const Continuation& by : motion.continuations) {
+      const auto named = std::find(kNamed.begin(), kNamed.end(), by);
+      writer.Put(static_cast<uint8_t>(named - kNamed.begin()));
+      if (named != kNamed.end()) continue;
+      writer.Put(static_cast<int16_t>(by.last));
+      writer.Put(static_cast<int16_t>(by.before));
+      writer.Put(static_cast<int16_t>(by.rest));
+    }
+  }
+  const std::string coded = CodeParts(raw, 1);
+  AppendSection({.type = SectionType::kMotion,
+                 .coder = kCoderZstdPlanes,
+                 .raw_bytes = static_cast<uint32_t>(raw.size()),
+                 .count = static_cast<uint32_t>(groups),
+                 .coded = coded},
+                body);
+  ++header.section_count;
+}
+
+absl::StatusOr<FrameMotion> ReadMotion(bool key, const Section& section, int64_t pieces,
+                                       int64_t groups) {
+  if (section.type != SectionType::kMotion || section.coder != kCoderZstdPlanes ||
+      section.prediction != Prediction::kNone || section.first != 0 || section.count != groups ||
+      section.raw_bytes == 0 || section.raw_bytes > LargestMotion(pieces, groups)) {
+    return absl::DataLossError("motion section does not fit its frame");
+  }
+  std::string raw(section.raw_bytes, '\0');
+  CLEAVE_RETURN_IF_ERROR(DecodeParts(section.coded, 1, raw));
+  ByteReader reader(raw);
+  FrameMotion motion;
+  const auto flags = reader.Get<uint8_t>();
+  bool fits = flags == 0 || (flags == kSomeHold && !key);
+  if (flags == kSomeHold) {
+    motion.held.resize(static_cast<size_t>(pieces));
+    for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
+      const unsigned bits = reader.Get<uint8_t>();
+      const size_t there = std::min<size_t>(8, motion.held.size() - piece);
+      for (size_t bit = 0; bit < there; ++bit) motion.held[piece + bit] = (bits >> bit & 1) != 0;
+      fits &= bits >> there == 0;
+    }
+  }
+  motion.continuations.assign(static_cast<size_t>(groups), kFromRest);
+  if (!key) {
+    for (Continuation& by : motion.continuations) {
+      const auto choice = reader.Get<uint8_t>();
+      if (choice < kListed) {
+        by = kNamed[choice];
+        continue;
+      }
+      by.last = reader.Get<int16_t>();
+      by.before = reader.Get<int16_t>();
+      by.rest = reader.Get<int16_t>();
+      fits &= choice == kListed && std::abs(by.last) <= kMaxContinuation &&
+              std::abs(by.before) <= kMaxContinuation && std::abs(by.rest) <= kMaxContinuation;
+    }
+  }
+  CLEAVE_RETURN_IF_ERROR(reader.Finish("motion section"));
+  if (!fits) return absl::DataLossError("motion section has values out of range");
+  return motion;
+}
+
+}  // namespace cleave

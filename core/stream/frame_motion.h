@@ -1,0 +1,33 @@
+#ifndef CLEAVE_CORE_STREAM_FRAME_MOTION_H_
+#define CLEAVE_CORE_STREAM_FRAME_MOTION_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "core/stream/frame_header.h"
+#include "core/stream/interpolation_predictor.h"
+
+namespace cleave {
+
+// What a frame says about its prediction, for predictor 2: FORMAT.md, "Motion".
+struct FrameMotion {
+  std::vector<bool> held;                   // by piece: stays where it is; empty: none does
+  std::vector<Continuation> continuations;  // by group; not in a key frame
+
+  bool Holds(int32_t piece) const { return !held.empty() && held[static_cast<size_t>(piece)]; }
+};
+
+// Appends a motion section for this many groups.
+void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHeader& header,
+                  std::string& body);
+
+// Reads one for a frame of this many pieces and groups. Errors: DataLoss.
+absl::StatusOr<FrameMotion> ReadMotion(bool key, const Section& section, int64_t pieces,
+                                       int64_t groups);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_FRAME_MOTION_H_

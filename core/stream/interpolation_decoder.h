@@ -1,0 +1,43 @@
+#ifndef CLEAVE_CORE_STREAM_INTERPOLATION_DECODER_H_
+#define CLEAVE_CORE_STREAM_INTERPOLATION_DECODER_H_
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/stream/frame_header.h"
+#include "core/stream/interpolation_predictor.h"
+#include "core/stream/stream_header.h"
+#include "core/stream/stream_state.h"
+
+namespace cleave {
+
+// The part of FrameDecoder that decodes positions of predictor 2. Not thread-safe; loops run on the
+// current TBB arena.
+class InterpolationDecoder {
+ public:
+  InterpolationDecoder(const StreamHeader& header, const StreamMesh& mesh);
+
+  // Decodes the sections behind the topology of a key or delta frame that follows `state` into
+  // next.positions; next.broken_edges are the frame's. Error, after which any frame may be decoded
+  // that follows `state`: DataLoss.
+  absl::Status Decode(const FrameHeader& frame, std::span<const Section> sections,
+                      const StreamState& state, StreamState& next);
+
+  // The frame that was decoded, or a hold, is now the last.
+  void Accept(FrameKind kind);
+
+  const NodeOrder& order() const { return predictor_.order(); }
+
+ private:
+  absl::Status DecodeResiduals(const Section& section, std::span<const int32_t> moving);
+
+  StreamHeader header_;
+  InterpolationPredictor predictor_;
+  std::vector<int32_t> residuals_;  // steps, by place
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_INTERPOLATION_DECODER_H_

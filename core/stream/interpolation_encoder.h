@@ -1,0 +1,58 @@
+#ifndef CLEAVE_CORE_STREAM_INTERPOLATION_ENCODER_H_
+#define CLEAVE_CORE_STREAM_INTERPOLATION_ENCODER_H_
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/base/vec3.h"
+#include "core/stream/frame_header.h"
+#include "core/stream/frame_motion.h"
+#include "core/stream/interpolation_predictor.h"
+#include "core/stream/stream_header.h"
+#include "core/stream/stream_state.h"
+
+namespace cleave {
+
+// The part of FrameEncoder that codes positions with predictor 2. Not thread-safe; loops run on the
+// current TBB arena.
+class InterpolationEncoder {
+ public:
+  InterpolationEncoder(const StreamHeader& header, const StreamMesh& mesh);
+
+  // Takes the positions (m) of the next frame. Error, which changes nothing that matters:
+  // OutOfRange for a coordinate that is not on the grid, naming the first such node.
+  absl::Status SetTargets(const std::vector<Vec3>& positions, double tolerance);
+
+  // True if every node may stay where `state` has it.
+  bool AllHold(const StreamState& state) const;
+
+  // Appends the motion and positions sections of a key or delta frame with these broken edges that
+  // follows `state`, and gives the positions that a decoder will have.
+  void Encode(bool key, std::span<const int32_t> broken, const StreamState& state,
+              FrameHeader& header, std::string& body, std::vector<int32_t>& next);
+
+  // The frame that was encoded, or a hold, is now the last.
+  void Accept(FrameKind kind);
+
+ private:
+  bool Stays(const StreamState& state, size_t place) const;
+  void ChooseHolds(const StreamState& state);
+  Continuation Choose(int64_t group, std::span<const int32_t> next);
+  void AppendPositions(FrameHeader& header, std::string& body) const;
+
+  StreamHeader header_;
+  InterpolationPredictor predictor_;
+  bool history_is_new_ = true;
+  double tolerance_ = 0;            // m, of the targets
+  std::vector<double> targets_;     // grid units, by place
+  std::vector<int32_t> residuals_;  // steps, by place
+  std::vector<uint8_t> moves_;      // by place
+  FrameMotion motion_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_INTERPOLATION_ENCODER_H_

@@ -1,0 +1,69 @@
+#ifndef CLEAVE_CORE_STREAM_STENCILS_H_
+#define CLEAVE_CORE_STREAM_STENCILS_H_
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/vec3.h"
+#include "core/stream/edge_graph.h"
+#include "core/stream/node_order.h"
+#include "core/stream/pieces.h"
+
+namespace cleave {
+
+inline constexpr size_t kStencilNodes = 8;
+inline constexpr int32_t kStencilOne = 1 << 15;  // weights of a stencil add up to this
+
+// Earlier places from which a place is predicted, all of its own piece. Unused ones repeat the
+// first, with weight 0. The leader of a piece has none: all are -1.
+struct Stencil {
+  std::array<int32_t, kStencilNodes> places{};
+  std::array<int32_t, kStencilNodes> weights{};
+
+  bool leads() const { return places[0] < 0; }
+};
+
+// Weights that reproduce affine maps of the rest positions as well as the neighbours allow;
+// FORMAT.md, "Weights". `neighbours` are 1 to kStencilNodes rest positions, nearest first.
+std::array<int32_t, kStencilNodes> StencilWeights(const Vec3& centre,
+                                                  std::span<const Vec3> neighbours);
+
+// The stencils of all places. They follow from the rest positions, the edges and the set of broken
+// edges alone, however that set came about. Loops run on the current TBB arena.
+class Stencils {
+ public:
+  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+           std::span<const std::array<int32_t, 2>> edges);
+
+  // Brings everything to this set of broken edges (ascending ids in range). Where edges only broke,
+  // the work is in proportion to what they touch. Returns the places whose stencil was made anew,
+  // in no particular order.
+  const std::vector<int32_t>& SetBroken(const NodeOrder& order, std::span<const int32_t> broken);
+
+  const Stencil& operator[](int32_t place) const { return stencils_[static_cast<size_t>(place)]; }
+  const Pieces& pieces() const { return pieces_; }
+  const std::vector<int32_t>& broken() const { return broken_; }
+
+ private:
+  // Where a stencil's places were found. What later breaks can change it depends on that.
+  enum class Reach : uint8_t { kOneEdge, kTwoEdges, kSpace };
+
+  void Rebuild(const NodeOrder& order, int32_t place);
+  void Touch(int32_t place);
+  void TouchAround(int32_t edge);
+
+  std::vector<Vec3> rest_;  // m, by place
+  EdgeGraph graph_;
+  Pieces pieces_;
+  std::vector<Stencil> stencils_;
+  std::vector<Reach> reaches_;
+  std::vector<int32_t> broken_;
+  std::vector<uint8_t> is_touched_;
+  std::vector<int32_t> touched_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_STENCILS_H_
