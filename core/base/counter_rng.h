@@ -11,6 +11,8 @@ enum class RandomStream : uint64_t {
   kEdgeDraw = 2,
   kMeshJitter = 3,
   kEdgeDeal = 4,
+  kNoiseWave = 5,
+  kPocket = 6,
 };
 
 // A uniform number in (0, 1), a pure function of its key: the same for any call order and thread.

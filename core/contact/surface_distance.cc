@@ -27,6 +27,7 @@ SurfaceDistance::SurfaceDistance(const std::vector<Vec3>& vertices,
   triangles_.resize(triangles.size());
   for (size_t k = 0; k < triangles.size(); ++k) {
     Triangle& triangle = triangles_[k];
+    triangle.id = static_cast<int32_t>(k);
     for (size_t i = 0; i < 3; ++i) {
       triangle.corners[i] =
           Eigen::Map<const Eigen::Vector3d>(vertices[static_cast<size_t>(triangles[k][i])].data());
@@ -90,7 +91,7 @@ void SurfaceDistance::Test(const Triangle& triangle, const Eigen::Vector3d& poin
   const auto& [a, b, c] = triangle.corners;
   const auto offer = [&](const Eigen::Vector3d& closest, const Eigen::Vector3d& normal) {
     const double squared = (point - closest).squaredNorm();
-    if (squared < best.squared) best = {squared, closest, normal};
+    if (squared < best.squared) best = {squared, closest, normal, &triangle};
   };
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = point - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -143,6 +144,20 @@ SignedDistance SurfaceDistance::At(const Eigen::Vector3d& point) const {
   // On the surface the direction to the closest point says nothing.
   const bool on_it = length <= 1e-12 * (nodes_[0].high - nodes_[0].low).norm();
   return {sign * length, on_it ? best.normal : Eigen::Vector3d(sign / length * away)};
+}
+
+SurfacePoint SurfaceDistance::ClosestPoint(const Eigen::Vector3d& point) const {
+  Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(),
+               Eigen::Vector3d::UnitZ()};
+  Search(0, point, best);
+  const auto& [a, b, c] = best.triangle->corners;
+  const Eigen::Vector3d ab = b - a, ac = c - a, along = best.point - a;
+  const double d00 = ab.squaredNorm(), d01 = ab.dot(ac), d11 = ac.squaredNorm();
+  const double d20 = along.dot(ab), d21 = along.dot(ac);
+  const double area = d00 * d11 - d01 * d01;
+  const double second = area > 0 ? (d11 * d20 - d01 * d21) / area : 0;
+  const double third = area > 0 ? (d00 * d21 - d01 * d20) / area : 0;
+  return {best.triangle->id, {1 - second - third, second, third}, std::sqrt(best.squared)};
 }
 
 }  // namespace cleave

@@ -16,6 +16,13 @@ struct SignedDistance {
   Eigen::Vector3d normal;  // unit gradient of value; any of the steepest where there are several
 };
 
+// The point of a surface that is closest to some point.
+struct SurfacePoint {
+  int32_t triangle = 0;
+  std::array<double, 3> weights = {1, 0, 0};  // of its corners; they add up to 1
+  double distance = 0;                        // m, >= 0
+};
+
 // Signed distance to a closed triangle surface. Which side a point is on follows from the
 // angle-weighted mean normal at the closest point, which is right on faces, edges and vertices
 // alike. Source: Baerentzen and Aanaes, "Signed distance computation using the angle weighted
@@ -27,6 +34,8 @@ class SurfaceDistance {
                   const std::vector<std::array<int32_t, 3>>& triangles);
 
   SignedDistance At(const Eigen::Vector3d& point) const;
+  // The surface need not be closed for this.
+  SurfacePoint ClosestPoint(const Eigen::Vector3d& point) const;
 
   int64_t bytes() const { return BytesOf(triangles_.size()); }
   static int64_t BytesOf(size_t triangles) {
@@ -42,6 +51,7 @@ class SurfaceDistance {
     int32_t right = -1;  // -1: a leaf
   };
   struct Triangle {
+    int32_t id = 0;
     std::array<Eigen::Vector3d, 3> corners;
     // Of the face, of the edges from each corner to the next, and of the corners.
     Eigen::Vector3d face;
@@ -52,6 +62,7 @@ class SurfaceDistance {
     double squared;
     Eigen::Vector3d point;
     Eigen::Vector3d normal;
+    const Triangle* triangle = nullptr;
   };
 
   int32_t Build(int32_t begin, int32_t end);

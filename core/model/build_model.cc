@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "core/damage/edge_thresholds.h"
+#include "core/impurity/bake.h"
 #include "core/material/fibre_directions.h"
 #include "core/material/moduli.h"
 #include "core/mesh/tet_geometry.h"
@@ -257,6 +258,18 @@ StrandPart StrandsOf(const std::vector<Material>& materials,
   return part;
 }
 
+// The client's nodes of the solver's edges.
+std::vector<std::array<int32_t, 2>> ClientEdgeNodes(const Incidence& incidence,
+                                                    const MeshOrder& order) {
+  std::vector<std::array<int32_t, 2>> nodes;
+  nodes.reserve(incidence.edges.size());
+  for (const auto& [a, b] : incidence.edges) {
+    nodes.push_back(
+        {order.old_node[static_cast<size_t>(a)], order.old_node[static_cast<size_t>(b)]});
+  }
+  return nodes;
+}
+
 // The client's ids of the solver's edges: ranks by the client's node ids.
 std::vector<int32_t> ClientEdges(const Incidence& incidence, const MeshOrder& order) {
   struct Entry {
@@ -378,6 +391,13 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
   // Fracture, where something can break.
   if (CanBreak(scene)) {
     FracturePart& part = model.fracture.emplace();
+    std::optional<BakedImpurities> baked;
+    if (scene.impurities && (scene.impurities->model != ImpurityModel::kOff || WeakensEdges(scene)))
+      baked = BakeImpurities(scene, mesh, ClientEdgeNodes(*model.incidence, model.order));
+    const auto weaken = [&](std::vector<double>& thresholds) {
+      WeakenEdges(scene, mesh, model.order, *model.incidence, thresholds);
+      if (baked) CountFactors(baked->edge_factors, thresholds);
+    };
     const auto strengths = [&](std::optional<double> Material::*strength) {
       std::vector<double> of_tet(material_of.size());
       for (size_t tet = 0; tet < of_tet.size(); ++tet) {
@@ -386,7 +406,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       }
       return of_tet;
     };
-    const bool one_for_all = scene.materials.size() == 1 && scene.weakenings.empty();
+    const bool one_for_all = scene.materials.size() == 1 && !WeakensEdges(scene);
     if (one_for_all && directional.empty()) {
       part.edge_thresholds = {scene.materials[0].tensile_strength.value_or(kUnbreakable)};
     } else {
@@ -394,7 +414,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
       part.edge_thresholds =
           directional.empty() ? EdgeThresholds(*model.incidence, tensile)
                               : EdgeThresholds(*model.mesh, *model.incidence, tensile, directional);
-      WeakenEdges(scene, mesh, model.order, *model.incidence, part.edge_thresholds);
+      weaken(part.edge_thresholds);
     }
 
     // Strength in compression.
@@ -406,7 +426,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     } else if (crushes) {
       part.compressive_thresholds =
           EdgeThresholds(*model.incidence, strengths(&Material::compressive_strength));
-      WeakenEdges(scene, mesh, model.order, *model.incidence, part.compressive_thresholds);
+      weaken(part.compressive_thresholds);
     }
     part.settings.simultaneity = scene.fracture.simultaneity;
     part.settings.aggregation = scene.fracture.aggregation;
@@ -429,7 +449,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
 
     // Impurities, which change its thresholds.
     if (scene.impurities && scene.impurities->model != ImpurityModel::kOff)
-      part.impurities = BuildImpurities(scene, mesh, model.order, *model.incidence);
+      part.impurities = BuildImpurities(scene, baked->potencies, model.order, *model.incidence);
   }
 
   return model;

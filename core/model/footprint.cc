@@ -131,7 +131,7 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   }
   if (breaks) {
     add("fracture",
-        (uniform && !directional && scene.weakenings.empty() ? 1 : edges) * kDouble +
+        (uniform && !directional && !WeakensEdges(scene) ? 1 : edges) * kDouble +
             edges * kInt +                                                       // thresholds, ids
             tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
             edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
@@ -141,8 +141,7 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   const bool crushes = std::any_of(
       scene.materials.begin(), scene.materials.end(),
       [](const Material& material) { return material.compressive_strength.has_value(); });
-  if (crushes)
-    add("compressive strength", (uniform && scene.weakenings.empty() ? 1 : edges) * kDouble);
+  if (crushes) add("compressive strength", (uniform && !WeakensEdges(scene) ? 1 : edges) * kDouble);
   const bool projects = breaks && scene.fracture.reformulation == Reformulation::kEdgeProjected;
   const int64_t projected_bytes = tets * EdgeProjectedTerm::TetBytes();  // at most
   if (projects) add("edge-projected tets", projected_bytes);

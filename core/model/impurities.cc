@@ -4,28 +4,9 @@
 #include <numeric>
 
 #include "core/base/counter_rng.h"
-#include "core/damage/impurity_noise.h"
-#include "core/scene/selection.h"
 
 namespace cleave {
 namespace {
-
-// The map of the method note's section 4, by the client's nodes.
-std::vector<double> PotencyMap(const Scene& scene, const TetMesh& mesh) {
-  const Impurities& impurities = *scene.impurities;
-  if (!impurities.map.empty()) return impurities.map;
-  const double elsewhere = impurities.patches.empty() ? 1 : 0;
-  std::vector<double> map(static_cast<size_t>(mesh.node_count()), elsewhere);
-  const RegionIndex regions(mesh);
-  for (const PotencyPatch& patch : impurities.patches) {
-    for (const NodeSet& set : scene.node_sets) {
-      if (set.name != patch.node_set) continue;
-      for (const int32_t node : SelectNodes(set, mesh, regions))
-        map[static_cast<size_t>(node)] = patch.share;
-    }
-  }
-  return map;
-}
 
 // A number in (0, 1) for every edge of the solver, by the client's ids of its nodes.
 std::vector<double> EdgeDraws(uint64_t seed, RandomStream stream, const MeshOrder& order,
@@ -43,8 +24,8 @@ std::vector<double> EdgeDraws(uint64_t seed, RandomStream stream, const MeshOrde
 
 }  // namespace
 
-ImpurityPart BuildImpurities(const Scene& scene, const TetMesh& mesh, const MeshOrder& order,
-                             const Incidence& incidence) {
+ImpurityPart BuildImpurities(const Scene& scene, std::span<const double> potencies,
+                             const MeshOrder& order, const Incidence& incidence) {
   const Impurities& impurities = *scene.impurities;
   ImpurityPart part;
   const double usual_weight = impurities.effect == ImpurityEffect::kUpgradation ? 0.2 : 1;
@@ -52,16 +33,9 @@ ImpurityPart BuildImpurities(const Scene& scene, const TetMesh& mesh, const Mesh
                    impurities.degree_weight.value_or(usual_weight),
                    impurities.model == ImpurityModel::kGraph};
 
-  const std::vector<double> map = PotencyMap(scene, mesh);
-  part.potencies.resize(map.size());
-  for (size_t node = 0; node < map.size(); ++node) {
-    double potency = impurities.potency * map[node];
-    if (impurities.noise > 0) {
-      potency += impurities.noise *
-                 NodeNoise(scene.seed, static_cast<int32_t>(node), impurities.distribution);
-    }
-    part.potencies[static_cast<size_t>(order.new_node[node])] = potency;
-  }
+  part.potencies.resize(potencies.size());
+  for (size_t node = 0; node < potencies.size(); ++node)
+    part.potencies[static_cast<size_t>(order.new_node[node])] = potencies[node];
 
   if (impurities.mode == ImpurityMode::kSampled)
     part.edge_draws = EdgeDraws(scene.seed, RandomStream::kEdgeDraw, order, incidence);

@@ -73,6 +73,10 @@ void WeakenEdges(const Scene& scene, const TetMesh& mesh, const MeshOrder& order
       apply_shape(weakening.factor, *sphere);
     }
   }
+  CountFactors(factors, thresholds);
+}
+
+void CountFactors(std::span<const double> factors, std::span<double> thresholds) {
   for (size_t edge = 0; edge < factors.size(); ++edge) {
     const double factor = factors[edge];
     const bool settles = factor == 0 || std::isinf(factor);  // whatever the threshold

@@ -16,6 +16,10 @@ namespace cleave {
 void WeakenEdges(const Scene& scene, const TetMesh& mesh, const MeshOrder& order,
                  const Incidence& incidence, std::span<double> thresholds);
 
+// Multiplies thresholds (Pa) by the factors of layers of impurities, an edge each or none at all,
+// by the same rule.
+void CountFactors(std::span<const double> factors, std::span<double> thresholds);
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CORE_MODEL_WEAKENED_EDGES_H_

@@ -11,6 +11,8 @@
 
 #include "core/base/vec3.h"
 #include "core/mesh/procedural_shapes.h"
+#include "core/scene/impurities.h"  // IWYU pragma: export
+#include "core/scene/polyline.h"    // IWYU pragma: export
 
 // What a client asks for, as plain data in SI units. Every struct mirrors the message of the same
 // name in proto/cleave/v1/scene.proto, field names included, so that a fault's path is the same in
@@ -57,9 +59,6 @@ struct CylindricalDirection {
 // A direction for every tet of the mesh, in its order.
 struct TetDirections {
   std::vector<Vec3> vectors;  // any length but 0
-};
-struct Polyline {
-  std::vector<Vec3> points;  // m
 };
 // The directions of curves nearby: the mean over their segments, weighted by the inverse fourth
 // power of distance; a curve and its reverse are the same.
@@ -223,51 +222,6 @@ struct InitialVelocity {
   Vec3 velocity{0, 0, 0};          // m/s
   Vec3 angular_velocity{0, 0, 0};  // rad/s about `center`
   Vec3 center{0, 0, 0};            // m
-};
-
-// What impurities do to strength.
-enum class ImpurityEffect {
-  kDegradation,  // down to a tenth
-  kUpgradation,  // up to ten times
-};
-
-// How edges take strength from the potencies of their nodes.
-enum class ImpurityModel {
-  kGraph,         // bonds that a node loses weaken those that it has left
-  kStatic,        // lost bonds do not count
-  kUncorrelated,  // the strengths of kStatic, dealt out to the edges at random
-  kOff,           // none: the pure body, for comparison
-};
-
-enum class ImpurityMode {
-  kExpected,  // every edge has the expected strength
-  kSampled,   // every edge has full or extreme strength, by its probability
-};
-
-enum class NoiseDistribution { kGaussian, kUniform };
-
-// A share of the potency for the nodes of a set.
-struct PotencyPatch {
-  std::string node_set;
-  double share = 1;  // of the potency, [0, 1]
-};
-
-// Impurities of the nodes: alpha = potency * map + noise * xi (method note, section 4).
-struct Impurities {
-  ImpurityEffect effect = ImpurityEffect::kDegradation;
-  ImpurityModel model = ImpurityModel::kGraph;
-  ImpurityMode mode = ImpurityMode::kExpected;
-  double potency = 0;
-  // The map, in [0, 1]: a share a node of the mesh; or patches, of which later ones win, and 0
-  // elsewhere; or neither, 1 everywhere.
-  std::vector<double> map = {};
-  std::vector<PotencyPatch> patches = {};
-  double noise = 0;  // standard deviation
-  NoiseDistribution distribution = NoiseDistribution::kGaussian;
-  double steepness = 5;      // k
-  double pure_offset = 0.2;  // a0
-  // omega; absent: 1 for degradation, 0.2 for upgradation
-  std::optional<double> degree_weight = std::nullopt;
 };
 
 // Everything on the side that the normal points away from.
@@ -434,13 +388,19 @@ inline bool PullsStrands(const Scene& scene) {
   return false;
 }
 
+// Whether anything in the scene changes what thresholds of edges count, but for impurities' potency.
+inline bool WeakensEdges(const Scene& scene) {
+  return !scene.weakenings.empty() ||
+         (scene.impurities.has_value() && WeakensEdges(*scene.impurities));
+}
+
 // Whether anything in the scene can break or is cut.
 inline bool CanBreak(const Scene& scene) {
   for (const Material& material : scene.materials) {
     if (material.tensile_strength.has_value() || material.compressive_strength.has_value())
       return true;
   }
-  return !scene.weakenings.empty();
+  return WeakensEdges(scene);
 }
 
 }  // namespace cleave

@@ -10,6 +10,7 @@
 #include "core/mesh/procedural.h"
 #include "core/scene/checker.h"
 #include "core/scene/collider_rules.h"
+#include "core/scene/impurity_rules.h"
 #include "core/scene/keyframe_rules.h"
 #include "core/scene/limits.h"
 #include "core/scene/load_rules.h"
@@ -150,28 +151,6 @@ void CheckWeakenings(const Scene& scene, const std::set<std::string>& names, Fau
       faults.Error(At("weakenings", i, "factor"),
                    absl::StrCat(weakening.factor, " is outside [0, inf]"));
     }
-  }
-}
-
-void CheckImpurities(const Impurities& impurities, const std::set<std::string>& names,
-                     Faults& faults, Checker& check) {
-  check.Within("impurities.potency", impurities.potency, 0, limits::kMaxPotency);
-  check.Within("impurities.noise", impurities.noise, 0, limits::kMaxPotencyNoise);
-  check.Above("impurities.steepness", impurities.steepness, 0, limits::kMaxSteepness);
-  check.Above("impurities.pure_offset", impurities.pure_offset, 0, limits::kMaxPureOffset);
-  if (impurities.degree_weight.has_value())
-    check.Within("impurities.degree_weight", *impurities.degree_weight, 0, 1);
-  if (check.List("impurities.map", impurities.map.size(), limits::kMaxNodes)) {
-    for (size_t k = 0; k < impurities.map.size(); ++k)
-      check.Within(At("impurities.map", k), impurities.map[k], 0, 1);
-  }
-  if (!impurities.map.empty() && !impurities.patches.empty())
-    faults.Error("impurities.patches", "the map has a share for every node already");
-  if (!check.List("impurities.patches", impurities.patches.size())) return;
-  for (size_t k = 0; k < impurities.patches.size(); ++k) {
-    const PotencyPatch& patch = impurities.patches[k];
-    CheckSetName(At("impurities.patches", k, "node_set"), patch.node_set, names, faults);
-    check.Within(At("impurities.patches", k, "share"), patch.share, 0, 1);
   }
 }
 
@@ -320,7 +299,7 @@ Faults ValidateScene(const Scene& scene) {
   CheckInitialVelocities(scene, names, faults, check);
   if (scene.gravity.has_value()) check.Coordinates("gravity", *scene.gravity);
   CheckWeakenings(scene, names, faults, check);
-  if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults, check);
+  if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults);
   CheckColliders(scene, faults);
   CheckContact(scene, faults);
   CheckSettings(scene, faults, check);
@@ -333,13 +312,7 @@ Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh) {
   CheckCoverage(scene, mesh, regions, faults);
   CheckSelections(scene, mesh, regions, faults);
   CheckFibreArrays(scene, mesh, faults);
-  if (scene.impurities.has_value() && !scene.impurities->map.empty()) {
-    const auto count = static_cast<int64_t>(scene.impurities->map.size());
-    if (count != mesh.node_count()) {
-      faults.Error("impurities.map", absl::StrCat("has ", count, " shares; the mesh has ",
-                                                  mesh.node_count(), " nodes"));
-    }
-  }
+  if (scene.impurities.has_value()) CheckImpuritiesOfMesh(*scene.impurities, mesh, faults);
   return faults;
 }
 

@@ -1,5 +1,6 @@
 #include "core/simulation/scene_digest.h"
 
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -67,6 +68,66 @@ void PutPlasticity(const Plasticity& plasticity, ByteWriter& out) {
   out.Put(plasticity.failure_strain.value_or(0));
 }
 
+void PutOptional(const std::optional<double>& value, ByteWriter& out) {
+  out.Put<uint8_t>(value.has_value());
+  out.Put(value.value_or(0));
+}
+
+void PutImpuritySource(const ImpuritySource& source, ByteWriter& out) {
+  out.Put<uint64_t>(source.index());
+  if (const auto* values = std::get_if<NodeValues>(&source)) {
+    out.PutVector(values->shares);
+  } else if (const auto* noise = std::get_if<NoiseField>(&source)) {
+    out.Put(static_cast<uint32_t>(noise->distribution));
+    out.Put(noise->correlation_length);
+  } else if (const auto* bands = std::get_if<BandField>(&source)) {
+    out.Put(static_cast<uint32_t>(bands->shape));
+    out.Put(bands->center);
+    out.Put(bands->axis);
+    out.Put(bands->position);
+    out.Put(bands->width);
+    PutOptional(bands->spacing, out);
+  } else if (const auto* pockets = std::get_if<PocketField>(&source)) {
+    out.Put(pockets->count);
+    out.Put(pockets->radius);
+  } else if (const auto* strokes = std::get_if<Strokes>(&source)) {
+    out.Put<uint64_t>(strokes->curves.size());
+    for (const Polyline& curve : strokes->curves) out.PutVector(curve.points);
+    out.Put(strokes->direction);
+    PutOptional(strokes->depth, out);
+    out.Put(strokes->radius);
+  } else if (const auto* pattern = std::get_if<SegmentPattern>(&source)) {
+    out.Put<uint64_t>(pattern->curves.size());
+    for (const DrawnCurve& curve : pattern->curves) {
+      out.PutVector(curve.points);
+      out.PutVector(curve.half_widths);
+    }
+    out.Put(pattern->origin);
+    out.Put(pattern->direction);
+    out.Put(pattern->up);
+    out.Put(pattern->rotation);
+    out.Put(pattern->scale);
+    PutOptional(pattern->depth, out);
+  } else if (const auto* paint = std::get_if<SurfacePaint>(&source)) {
+    out.PutVector(paint->shares);
+    out.PutVector(paint->vertices);
+    out.PutVector(paint->triangles);
+    out.Put(paint->depth);
+  }
+}
+
+void PutImpurityLayer(const ImpurityLayer& layer, ByteWriter& out) {
+  PutImpuritySource(layer.source, out);
+  PutText(layer.node_set, out);
+  PutOptional(layer.potency, out);
+  PutOptional(layer.weakening, out);
+  out.Put(static_cast<uint32_t>(layer.blend));
+  out.Put(layer.falloff);
+  out.Put(static_cast<uint32_t>(layer.falloff_shape));
+  out.Put<uint8_t>(layer.seed.has_value());
+  out.Put(layer.seed.value_or(0));
+}
+
 void PutImpurities(const Impurities& impurities, ByteWriter& out) {
   out.Put(static_cast<uint32_t>(impurities.effect));
   out.Put(static_cast<uint32_t>(impurities.model));
@@ -84,6 +145,8 @@ void PutImpurities(const Impurities& impurities, ByteWriter& out) {
   out.Put(impurities.pure_offset);
   out.Put<uint8_t>(impurities.degree_weight.has_value());
   out.Put(impurities.degree_weight.value_or(0));
+  out.Put<uint64_t>(impurities.layers.size());
+  for (const ImpurityLayer& layer : impurities.layers) PutImpurityLayer(layer, out);
 }
 
 void PutKeyframes(const std::vector<Keyframe>& keyframes, ByteWriter& out) {
@@ -93,11 +156,6 @@ void PutKeyframes(const std::vector<Keyframe>& keyframes, ByteWriter& out) {
     out.Put(keyframe.translation);
     out.Put(keyframe.rotation);
   }
-}
-
-void PutOptional(const std::optional<double>& value, ByteWriter& out) {
-  out.Put<uint8_t>(value.has_value());
-  out.Put(value.value_or(0));
 }
 
 void PutCollider(const Collider& collider, ByteWriter& out) {

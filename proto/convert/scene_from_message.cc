@@ -5,6 +5,7 @@
 #include "absl/strings/string_view.h"
 #include "core/scene/checker.h"
 #include "core/scene/limits.h"
+#include "proto/convert/impurity_layer.h"
 #include "proto/convert/scene.h"
 
 namespace cleave {
@@ -238,6 +239,10 @@ class Converter {
     if (message.has_steepness()) impurities.steepness = message.steepness();
     if (message.has_pure_offset()) impurities.pure_offset = message.pure_offset();
     if (message.has_degree_weight()) impurities.degree_weight = message.degree_weight();
+    for (int k = 0; k < message.layers_size(); ++k) {
+      impurities.layers.push_back(
+          LayerFromMessage(message.layers(k), absl::StrCat("impurities.layers[", k, "]"), faults_));
+    }
     return impurities;
   }
 

@@ -1,3 +1,4 @@
+#include "proto/convert/impurity_layer.h"
 #include "proto/convert/scene.h"
 
 namespace cleave {
@@ -254,6 +255,7 @@ void WriteImpurities(const Impurities& impurities, v1::Impurities* message) {
   message->set_steepness(impurities.steepness);
   message->set_pure_offset(impurities.pure_offset);
   if (impurities.degree_weight.has_value()) message->set_degree_weight(*impurities.degree_weight);
+  for (const ImpurityLayer& layer : impurities.layers) WriteLayer(layer, *message->add_layers());
 }
 
 void WriteSettings(const Scene& scene, v1::Scene& message) {

@@ -100,6 +100,14 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.materials[0].tensile_strength = 1e5;
   EXPECT_EQ(Names(Plan(scene)).back(), "impurities");
   EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
+  // Layers are baked: what stays is what potencies and thresholds take anyway.
+  const auto pure_fracture = BytesOf(Plan(scene), "fracture");
+  scene.impurities->layers.emplace_back().source = Strokes{};
+  scene.impurities->layers[0].potency = 1;
+  EXPECT_EQ(BytesOf(Plan(scene), "impurities"), 1000 * 12 + 6000 * 8);
+  EXPECT_EQ(BytesOf(Plan(scene), "fracture"), pure_fracture);
+  scene.impurities->layers[0].weakening = 0.5;
+  EXPECT_EQ(BytesOf(Plan(scene), "fracture"), pure_fracture + 5999 * 8);
   scene = minimal;
   scene.materials[0].tensile_strength = 1e5;
   EXPECT_EQ(BytesOf(Plan(scene), "fatigue"), -1);

@@ -197,5 +197,66 @@ TEST(Impurities, TheDistributionOfNoiseMattersNoMoreThanTheSeed) {
   EXPECT_LT(most, 1);  // seeds differ at all
 }
 
+// A stroke across the slab at x = 1.6, between two cross-sections of nodes.
+ImpurityLayer Stroke() {
+  Strokes strokes;
+  strokes.curves = {{{{1.6, -9, 0}, {1.6, 9, 0}}}};
+  ImpurityLayer layer;
+  layer.source = strokes;
+  return layer;
+}
+
+TEST(ImpurityLayers, AStrokeThatWeakensToNothingCutsTheBodyBeforeTheFirstStep) {
+  for (const bool breakable : {true, false}) {
+    for (const ImpurityModel model : {ImpurityModel::kGraph, ImpurityModel::kOff}) {
+      Scene scene = PulledSlab();
+      if (!breakable) scene.materials[0].tensile_strength.reset();
+      scene.impurities = Impurities{.model = model};
+      scene.impurities->layers = {Stroke()};
+      scene.impurities->layers[0].weakening = 0;
+      EXPECT_EQ((*Simulation::Create(scene, Slab(), {}))->fragments(), 2);
+      scene.impurities->layers[0].weakening = 0.5;
+      EXPECT_EQ((*Simulation::Create(scene, Slab(), {}))->fragments(), 1);
+    }
+  }
+}
+
+TEST(ImpurityLayers, AStrokeGuidesTheCrackByPotencyAndByWeakening) {
+  Scene scene = PulledSlab();
+  const auto near_stroke = [](const std::vector<int32_t>& edges) {
+    const Incidence incidence = BuildIncidence(Slab());
+    const TetMesh mesh = Slab();
+    return std::count_if(edges.begin(), edges.end(), [&](int32_t edge) {
+      const auto [a, b] = incidence.edges[static_cast<size_t>(edge)];
+      return std::min(mesh.rest_positions[static_cast<size_t>(a)][0],
+                      mesh.rest_positions[static_cast<size_t>(b)][0]) == 1.5 &&
+             std::max(mesh.rest_positions[static_cast<size_t>(a)][0],
+                      mesh.rest_positions[static_cast<size_t>(b)][0]) == 1.75;
+    });
+  };
+  scene.impurities = Impurities{};
+  scene.impurities->layers = {Stroke()};
+  scene.impurities->layers[0].weakening = 0.3;
+  const Outcome weakened = Break(scene);
+  ASSERT_GT(weakened.edges.size(), 5u);
+  EXPECT_EQ(near_stroke(weakened.edges), static_cast<int64_t>(weakened.edges.size()));
+  scene.impurities->layers[0].weakening.reset();
+  scene.impurities->layers[0].potency = 10;
+  const Outcome impure = Break(scene);
+  ASSERT_GT(impure.edges.size(), 5u);
+  EXPECT_GE(near_stroke(impure.edges), static_cast<int64_t>(impure.edges.size()) / 2);
+}
+
+TEST(ImpurityLayers, BelongToTheSceneOfASavedState) {
+  Scene scene = PulledSlab();
+  scene.impurities = Impurities{};
+  scene.impurities->layers = {Stroke()};
+  scene.impurities->layers[0].potency = 1;
+  const auto simulation = *Simulation::Create(scene, Slab(), {});
+  std::get<Strokes>(scene.impurities->layers[0].source).curves[0].points[0][0] = 1.61;
+  const auto other = *Simulation::Create(scene, Slab(), {});
+  EXPECT_FALSE(other->Restore(simulation->Save()).ok());
+}
+
 }  // namespace
 }  // namespace cleave

@@ -232,6 +232,86 @@ constexpr char kEveryField[] = R"pb(
     steepness: 4
     pure_offset: 0.3
     degree_weight: 0.75
+    layers {
+      name: "worn"
+      node_values {
+        shares: [ 0, 1 ]
+        file: "worn.vtu"
+        array: "wear"
+      }
+      node_set: "grip"
+      potency: 3
+      weakening: inf
+      blend: BLEND_ADD
+      falloff: 0
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+      seed: 7
+    }
+    layers {
+      noise { distribution: NOISE_DISTRIBUTION_UNIFORM correlation_length: 0.25 }
+      potency: 0
+      blend: BLEND_MAX
+      falloff_shape: FALLOFF_SHAPE_SMOOTH
+    }
+    layers {
+      bands {
+        shape: BAND_SHAPE_CYLINDERS
+        center: [ 1, 2, 3 ]
+        axis: [ 0, 1, 0 ]
+        position: 0.5
+        width: 0.125
+        spacing: 0.75
+      }
+      weakening: 0
+      blend: BLEND_REPLACE
+      falloff: 0.5
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+    }
+    layers {
+      pockets { count: 12 radius: 0.5 }
+      blend: BLEND_MAX
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+    }
+    layers {
+      strokes {
+        curves { points: [ 0, 0, 0, 1, 2, 3 ] }
+        curves { points: [ 4, 5, 6, 7, 8, 9 ] }
+        direction: [ 0, 1, -1 ]
+        depth: 0.5
+        radius: 0.25
+      }
+      blend: BLEND_MAX
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+    }
+    layers {
+      pattern {
+        curves {
+          points: [ 0, 1, 2, 3 ]
+          half_widths: [ 4, 5 ]
+        }
+        image { file: "star.png" threshold: 0.25 bright: true keep_width: true tolerance: 1.5 }
+        origin: [ 1, 2, 3 ]
+        direction: [ 1, 0, 0 ]
+        up: [ 0, 0, 1 ]
+        rotation: 0.5
+        scale: 2
+        depth: 3
+      }
+      blend: BLEND_MAX
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+    }
+    layers {
+      paint {
+        shares: [ 0, 0.5, 1 ]
+        vertices: [ 0, 0, 0, 1, 0, 0, 0, 1, 0 ]
+        triangles: [ 0, 1, 2 ]
+        depth: 0.5
+        file: "paint.ply"
+        array: "red"
+      }
+      blend: BLEND_MAX
+      falloff_shape: FALLOFF_SHAPE_LINEAR
+    }
   }
 )pb";
 

@@ -1,4 +1,4 @@
-#include "core/damage/impurity_noise.h"
+#include "core/impurity/impurity_noise.h"
 
 #include <cmath>
 #include <numbers>

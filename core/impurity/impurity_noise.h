@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CORE_DAMAGE_IMPURITY_NOISE_H_
-#define CLEAVE_CORE_DAMAGE_IMPURITY_NOISE_H_
+#ifndef CLEAVE_CORE_IMPURITY_IMPURITY_NOISE_H_
+#define CLEAVE_CORE_IMPURITY_IMPURITY_NOISE_H_
 
 #include <cstdint>
 
@@ -13,4 +13,4 @@ double NodeNoise(uint64_t seed, int32_t node, NoiseDistribution distribution);
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CORE_DAMAGE_IMPURITY_NOISE_H_
+#endif  // CLEAVE_CORE_IMPURITY_IMPURITY_NOISE_H_

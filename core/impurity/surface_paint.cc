@@ -1,0 +1,40 @@
+#include "core/impurity/surface_paint.h"
+
+#include <Eigen/Core>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/contact/surface_distance.h"
+#include "core/impurity/falloff.h"
+#include "core/mesh/boundary_faces.h"
+
+namespace cleave {
+
+std::vector<double> PaintShares(const SurfacePaint& paint, const ImpurityLayer& layer,
+                                const TetMesh& mesh) {
+  std::vector<std::array<int32_t, 3>> triangles = paint.triangles;
+  if (paint.vertices.empty()) {
+    std::vector<int32_t> nodes(mesh.rest_positions.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    for (const BoundaryFace& face : FindBoundaryFaces(mesh, nodes)) triangles.push_back(face.nodes);
+  }
+  const SurfaceDistance surface(paint.vertices.empty() ? mesh.rest_positions : paint.vertices,
+                                triangles);
+  std::vector<double> shares(mesh.rest_positions.size());
+  ParallelFor(mesh.node_count(), 64, [&](int64_t begin, int64_t end) {
+    for (int64_t n = begin; n < end; ++n) {
+      const auto node = static_cast<size_t>(n);
+      const SurfacePoint closest =
+          surface.ClosestPoint(Eigen::Vector3d(mesh.rest_positions[node].data()));
+      double share = 0;
+      for (size_t i = 0; i < 3; ++i) {
+        const int32_t vertex = triangles[static_cast<size_t>(closest.triangle)][i];
+        share += closest.weights[i] * paint.shares[static_cast<size_t>(vertex)];
+      }
+      shares[node] = share * ShareAt(closest.distance - paint.depth, layer);
+    }
+  });
+  return shares;
+}
+
+}  // namespace cleave

@@ -1,0 +1,24 @@
+#ifndef CLEAVE_CORE_SCENE_IMPURITY_RULES_H_
+#define CLEAVE_CORE_SCENE_IMPURITY_RULES_H_
+
+#include <set>
+#include <string>
+
+#include "core/base/faults.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/scene/impurities.h"
+
+namespace cleave {
+
+// The rules of ValidateScene for impurities. `names` are those of the node sets.
+void CheckImpurities(const Impurities& impurities, const std::set<std::string>& names,
+                     Faults& faults);
+
+// The rules of ValidateSceneWithMesh for them: arrays have the mesh's size, strokes and patterns
+// cross edges of it. Precondition: the mesh passed CheckMesh. Layers that CheckImpurities refuses
+// are passed over.
+void CheckImpuritiesOfMesh(const Impurities& impurities, const TetMesh& mesh, Faults& faults);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SCENE_IMPURITY_RULES_H_
