@@ -65,6 +65,7 @@ absl::StatusOr<Run> RunDemonstration(const Demonstration& demonstration, int thr
     CLEAVE_ASSIGN_OR_RETURN(FrameReport report, simulation->Advance(never));
     run.reports.push_back(std::move(report));
     run.frames.push_back(FrameOf(*simulation));
+    if (run.separation < 0) run.plastic_strains = simulation->plastic_strains();
     if (run.separation >= 0 || demonstration.grip.empty() || demonstration.pulled.empty()) continue;
     const std::span<const Frame> last(&run.frames.back(), 1);
     if (run.reports.back().new_broken_edges > 0 &&
@@ -109,20 +110,28 @@ Metrics CommonMetrics(const Demonstration& demonstration, const Incidence& incid
   return metrics;
 }
 
+absl::StatusOr<Outcome> Measured(Demonstration demonstration,
+                                 Metrics (*measure)(const Demonstration&, const Incidence&,
+                                                    const Run&),
+                                 int threads) {
+  Outcome outcome;
+  outcome.demonstration = std::move(demonstration);
+  CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(outcome.demonstration.mesh).ToStatus());
+  CLEAVE_ASSIGN_OR_RETURN(outcome.run, RunDemonstration(outcome.demonstration, threads));
+  const Incidence incidence = BuildIncidence(outcome.demonstration.mesh);
+  outcome.metrics = CommonMetrics(outcome.demonstration, incidence, outcome.run);
+  outcome.metrics.merge(measure(outcome.demonstration, incidence, outcome.run));
+  return outcome;
+}
+
 absl::StatusOr<Outcome> Demonstrate(const std::string& name, const Setting& setting, int threads) {
   for (const DemonstrationKind& kind : DemonstrationKinds()) {
     if (kind.name != name) continue;
     if (std::find(kind.variants.begin(), kind.variants.end(), setting.variant) ==
         kind.variants.end())
       return absl::NotFoundError(absl::StrCat(name, " has no variant ", setting.variant));
-    Outcome outcome;
-    CLEAVE_ASSIGN_OR_RETURN(outcome.demonstration, kind.make(setting));
-    CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(outcome.demonstration.mesh).ToStatus());
-    CLEAVE_ASSIGN_OR_RETURN(outcome.run, RunDemonstration(outcome.demonstration, threads));
-    const Incidence incidence = BuildIncidence(outcome.demonstration.mesh);
-    outcome.metrics = CommonMetrics(outcome.demonstration, incidence, outcome.run);
-    outcome.metrics.merge(kind.measure(outcome.demonstration, incidence, outcome.run));
-    return outcome;
+    CLEAVE_ASSIGN_OR_RETURN(Demonstration demonstration, kind.make(setting));
+    return Measured(std::move(demonstration), kind.measure, threads);
   }
   return absl::NotFoundError(absl::StrCat("no demonstration is called ", name));
 }

@@ -50,6 +50,8 @@ struct Run {
   std::vector<Frame> frames;
   std::vector<FrameReport> reports;
   int64_t separation = -1;  // the frame in which grips came apart; -1: never
+  // Equivalent, of every tet, when grips came apart or else at the end; empty where nothing flows.
+  std::vector<double> plastic_strains = {};
 
   double SecondsPerFrame() const;
   double PeakForce(const Demonstration& demonstration) const;  // N, along the pull
@@ -78,12 +80,18 @@ struct DemonstrationKind {
 };
 std::span<const DemonstrationKind> DemonstrationKinds();
 
-// Makes, runs and measures in one go. Errors: NotFound for an unknown name; of the parts.
+// Runs and measures. Errors: those of RunDemonstration.
 struct Outcome {
   Demonstration demonstration;
   Run run;
   Metrics metrics;
 };
+absl::StatusOr<Outcome> Measured(Demonstration demonstration,
+                                 Metrics (*measure)(const Demonstration&, const Incidence&,
+                                                    const Run&),
+                                 int threads = 1);
+
+// Makes, runs and measures in one go. Errors: NotFound for an unknown name; of the parts.
 absl::StatusOr<Outcome> Demonstrate(const std::string& name, const Setting& setting,
                                     int threads = 1);
 

@@ -5,6 +5,7 @@
 #include "tests/scenes/branch.h"
 #include "tests/scenes/column.h"
 #include "tests/scenes/demonstration.h"
+#include "tests/scenes/ductile_bar.h"
 #include "tests/scenes/fibre_bar.h"
 #include "tests/scenes/locality.h"
 #include "tests/scenes/slab_trio.h"
@@ -24,6 +25,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        {"iso", "aniso", "impure", "shuffled", "turned"},
        MakeSlabTrio,
        MeasureSlabTrio},
+      {"ductile_bar", "Fig. 3", {"gold", "alloy", "off"}, MakeDuctileBar, MeasureDuctileBar},
       {"branch",
        "Figs. 7 and 13",
        {"dry", "damp", "dry-iso", "damp-iso"},

@@ -3,11 +3,13 @@
 //
 //   scene_runner NAME VARIANT [--seed N] [--lattice] [--coarseness C] [--threads N]
 //                [--picture FILE.png] [--sheet FILE.png] [--strain] [--width PIXELS]
+//                [--azimuth DEGREES] [--elevation DEGREES] [--frame N]
 //
 // scene_runner alone lists names and variants.
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -27,6 +29,8 @@ struct Arguments {
   std::string sheet;
   bool strain = false;
   int width = 800;  // pixels
+  CameraOptions camera;
+  int64_t frame = -1;  // of the picture; -1: the last
 };
 
 int List() {
@@ -57,10 +61,13 @@ absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   PreviewOptions options;
   options.width = arguments.width;
   options.samples = 3;
+  options.camera = arguments.camera;
   ApplySceneLook(outcome.demonstration.scene, outcome.demonstration.mesh, options);
   if (arguments.strain) options.color_by = ColorBy::kStrain;
   if (!arguments.picture.empty()) {
-    const auto image = RenderStill(outcome.demonstration.mesh, source, source.count - 1, options);
+    const int64_t last = source.count - 1;
+    const int64_t position = arguments.frame < 0 ? last : std::min(arguments.frame, last);
+    const auto image = RenderStill(outcome.demonstration.mesh, source, position, options);
     if (!image.ok()) return image.status();
     if (absl::Status written = WritePng(arguments.picture, *image); !written.ok()) return written;
   }
@@ -101,6 +108,12 @@ int Main(int argc, char** argv) {
       arguments.picture = value;
     else if (option == "--sheet")
       arguments.sheet = value;
+    else if (option == "--azimuth")
+      arguments.camera.azimuth = std::atof(value);
+    else if (option == "--elevation")
+      arguments.camera.elevation = std::atof(value);
+    else if (option == "--frame")
+      arguments.frame = std::atoi(value);
     else if (option == "--width")
       arguments.width = std::atoi(value);
     else
