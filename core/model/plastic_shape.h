@@ -199,7 +199,7 @@ class PlasticShape {
   const std::vector<PlasticState<T>>& flowed() const { return flowed_; }
 
  private:
-  static constexpr double kNearYield = 0.999;
+  static constexpr double kNearYield = 0.99;
 
   FlowRule<Double4> RuleOf(int64_t b, int part) const {
     const PlasticRecord& of = record(b, part);
