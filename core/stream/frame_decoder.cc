@@ -190,6 +190,7 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   if (frame.kind == FrameKind::kHold) {
     if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
     next.positions = state_.positions;
+    next.residuals = state_.residuals;
   } else if (interpolation_.has_value()) {
     CLEAVE_RETURN_IF_ERROR(
         interpolation_->Decode(frame, std::span(parts.sections).subspan(section), state_, next));

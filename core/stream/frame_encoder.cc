@@ -243,7 +243,8 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   std::string body;
   const auto append_positions = [&] {
     if (interpolation_.has_value()) {
-      interpolation_->Encode(key, frame.broken_edges, state_, header, body, next_);
+      interpolation_->Encode(key, frame.broken_edges, state_, header, body, next_, next_residuals_);
+      std::swap(state_.residuals, next_residuals_);
     } else {
       AppendPositions(key, header, body);
     }

@@ -76,6 +76,7 @@ class FrameEncoder {
   StreamState state_;
   std::vector<int32_t> next_;                          // quantised positions of the frame in work
   std::optional<InterpolationEncoder> interpolation_;  // with predictor 2
+  ResidualHistory next_residuals_;
 };
 
 }  // namespace cleave

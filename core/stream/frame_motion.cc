@@ -19,7 +19,7 @@ constexpr std::array<Continuation, 4> kNamed = {
 constexpr auto kListed = static_cast<uint8_t>(kNamed.size());
 
 size_t LargestMotion(int64_t pieces, int64_t groups) {
-  return 1 + (static_cast<size_t>(pieces) + 7) / 8 + 7 * static_cast<size_t>(groups);
+  return 1 + (static_cast<size_t>(pieces) + 7) / 8 + 8 * static_cast<size_t>(groups);
 }
 
 }  // namespace
@@ -46,6 +46,7 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
       writer.Put(static_cast<int16_t>(by.rest));
     }
   }
+  for (const uint8_t group_class : motion.classes) writer.Put(group_class);
   const std::string coded = CodeParts(raw, 1);
   AppendSection({.type = SectionType::kMotion,
                  .coder = kCoderZstdPlanes,
@@ -56,8 +57,8 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   ++header.section_count;
 }
 
-absl::StatusOr<FrameMotion> ReadMotion(bool key, const Section& section, int64_t pieces,
-                                       int64_t groups) {
+absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section& section,
+                                       int64_t pieces, int64_t groups) {
   if (section.type != SectionType::kMotion || section.coder != kCoderZstdPlanes ||
       section.prediction != Prediction::kNone || section.first != 0 || section.count != groups ||
       section.raw_bytes == 0 || section.raw_bytes > LargestMotion(pieces, groups)) {
@@ -93,9 +94,32 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, const Section& section, int64_t
               std::abs(by.before) <= kMaxContinuation && std::abs(by.rest) <= kMaxContinuation;
     }
   }
+  if (has_classes) {
+    for (int64_t group = 0; group < groups; ++group) {
+      motion.classes.push_back(reader.Get<uint8_t>());
+      fits &= motion.classes.back() < kClasses;
+    }
+  }
   CLEAVE_RETURN_IF_ERROR(reader.Finish("motion section"));
   if (!fits) return absl::DataLossError("motion section has values out of range");
   return motion;
+}
+
+void BeginResiduals(const NodeOrder& order, const FrameMotion& motion,
+                    const ResidualHistory& history, ResidualHistory& next) {
+  if (motion.classes.empty()) {
+    next.activities = history.activities;
+    next.counts = history.counts;
+  } else {
+    next.activities.resize(order.nodes.size());
+    for (size_t group = 0; group < motion.classes.size(); ++group) {
+      std::fill(next.activities.begin() + order.group_begins[group],
+                next.activities.begin() + order.group_begins[group + 1],
+                ActivityOf(motion.classes[group]));
+    }
+    next.counts = PriorCounts();
+  }
+  next.counts.Fade();
 }
 
 }  // namespace cleave

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/stream/frame_motion.h"
+#include "core/stream/residual_coder.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -18,8 +20,8 @@ InterpolationDecoder::InterpolationDecoder(const StreamHeader& header, const Str
   residuals_.resize(3 * mesh.rest_positions.size());
 }
 
-absl::Status InterpolationDecoder::DecodeResiduals(const Section& section,
-                                                   std::span<const int32_t> moving) {
+absl::Status InterpolationDecoder::DecodePlanes(const Section& section,
+                                                std::span<const int32_t> moving) {
   const size_t size = 3 * moving.size();
   if (section.raw_bytes > 4 * size || (size > 0 && section.raw_bytes % size != 0)) {
     return absl::DataLossError("positions section does not fit its frame");
@@ -49,9 +51,19 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
   }
   predictor_.Prepare(frame.tolerance, next.broken_edges, state.positions, state.previous, false);
   const Pieces& pieces = predictor_.pieces();
-  CLEAVE_ASSIGN_OR_RETURN(const FrameMotion motion, ReadMotion(key, sections[0], pieces.count(),
-                                                               predictor_.order().groups()));
+  const bool rans = header_.coder_id == kCoderContextRans;
+  const bool fresh = key || state.residuals.fresh;
+  CLEAVE_ASSIGN_OR_RETURN(
+      const FrameMotion motion,
+      ReadMotion(key, rans && fresh, sections[0], pieces.count(), predictor_.order().groups()));
 
+  std::optional<ResidualCoder> coder;
+  if (rans) {
+    coder.emplace(state.residuals, fresh, ResidualCoder::Direction::kDecode);
+    BeginResiduals(predictor_.order(), motion, state.residuals, next.residuals);
+  }
+  next.residuals.fresh = key;
+  std::vector<SymbolCounts> counts(rans ? chunks : 0);
   std::vector<absl::Status> statuses(chunks);
   ParallelFor(static_cast<int64_t>(chunks), 1, [&](int64_t from, int64_t to) {
     std::vector<int32_t> moving;
@@ -71,10 +83,21 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
            ++place) {
         if (!motion.Holds(pieces[place])) moving.push_back(place);
       }
-      statuses[index] = DecodeResiduals(chunk, moving);
+      if (!rans) {
+        statuses[index] = DecodePlanes(chunk, moving);
+      } else if (chunk.raw_bytes == 0 && chunk.coded.empty()) {
+        ResidualCoder::SkipZeros(moving, next.residuals.activities, counts[index]);
+        for (const int32_t place : moving) std::fill_n(residuals_.begin() + 3 * place, 3, 0);
+      } else if (chunk.raw_bytes != 12 * moving.size()) {
+        statuses[index] = absl::DataLossError("positions section does not fit its frame");
+      } else {
+        statuses[index] = coder->Decode(chunk.coded, moving, residuals_, next.residuals.activities,
+                                        counts[index]);
+      }
     }
   });
   for (const absl::Status& status : statuses) CLEAVE_RETURN_IF_ERROR(status);
+  for (const SymbolCounts& of_chunk : counts) next.residuals.counts.Add(of_chunk);
 
   next.positions.resize(3 * nodes);
   std::atomic<bool> all_fit{true};

@@ -20,8 +20,8 @@ class InterpolationDecoder {
   InterpolationDecoder(const StreamHeader& header, const StreamMesh& mesh);
 
   // Decodes the sections behind the topology of a key or delta frame that follows `state` into
-  // next.positions; next.broken_edges are the frame's. Error, after which any frame may be decoded
-  // that follows `state`: DataLoss.
+  // next.positions and next.residuals; next.broken_edges are the frame's. Error, after which any
+  // frame may be decoded that follows `state`: DataLoss.
   absl::Status Decode(const FrameHeader& frame, std::span<const Section> sections,
                       const StreamState& state, StreamState& next);
 
@@ -31,7 +31,7 @@ class InterpolationDecoder {
   const NodeOrder& order() const { return predictor_.order(); }
 
  private:
-  absl::Status DecodeResiduals(const Section& section, std::span<const int32_t> moving);
+  absl::Status DecodePlanes(const Section& section, std::span<const int32_t> moving);
 
   StreamHeader header_;
   InterpolationPredictor predictor_;

@@ -4,10 +4,13 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/parallel.h"
 #include "core/stream/continuation_fit.h"
+#include "core/stream/residual_coder.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -118,7 +121,7 @@ Continuation InterpolationEncoder::Choose(int64_t group, std::span<const int32_t
 
 void InterpolationEncoder::Encode(bool key, std::span<const int32_t> broken,
                                   const StreamState& state, FrameHeader& header, std::string& body,
-                                  std::vector<int32_t>& next) {
+                                  std::vector<int32_t>& next, ResidualHistory& next_history) {
   predictor_.Prepare(tolerance_, broken, state.positions, state.previous, history_is_new_);
   history_is_new_ = false;
   motion_.held.clear();
@@ -144,34 +147,84 @@ void InterpolationEncoder::Encode(bool key, std::span<const int32_t> broken,
     return position;
   };
   predictor_.Run(key, state.positions, state.previous, next, choose, correct);
+  const bool fresh = key || state.residuals.fresh;
+  motion_.classes.clear();
+  if (fresh && header_.coder_id == kCoderContextRans) ChooseClasses();
   AppendMotion(key, motion_, predictor_.order().groups(), header, body);
-  AppendPositions(header, body);
+  AppendPositions(fresh, state.residuals, header, body, next_history);
+  next_history.fresh = key;
 }
 
-void InterpolationEncoder::AppendPositions(FrameHeader& header, std::string& body) const {
+void InterpolationEncoder::ChooseClasses() {
+  const NodeOrder& order = predictor_.order();
+  for (size_t group = 0; group + 1 < order.group_begins.size(); ++group) {
+    uint64_t sum = 0;
+    uint64_t moving = 1;
+    for (int32_t place = order.group_begins[group]; place < order.group_begins[group + 1];
+         ++place) {
+      if (motion_.Holds(predictor_.pieces()[place])) continue;
+      ++moving;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        sum += static_cast<uint64_t>(std::abs(residuals_[3 * static_cast<size_t>(place) + axis]));
+      }
+    }
+    motion_.classes.push_back(
+        ClassOf(static_cast<uint32_t>(std::min<uint64_t>(16 * sum / moving, 65535))));
+  }
+}
+
+void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& history,
+                                           FrameHeader& header, std::string& body,
+                                           ResidualHistory& next) const {
+  const bool rans = header_.coder_id == kCoderContextRans;
+  std::optional<ResidualCoder> coder;
+  if (rans) {
+    coder.emplace(history, fresh, ResidualCoder::Direction::kEncode);
+    BeginResiduals(predictor_.order(), motion_, history, next);
+  }
   const auto nodes = static_cast<int64_t>(header_.node_count);
   const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
   const int64_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
   struct Chunk {
     uint32_t raw_bytes = 0;
     std::string coded;
+    SymbolCounts counts;
   };
   std::vector<Chunk> coded(static_cast<size_t>(chunks));
   ParallelFor(chunks, 1, [&](int64_t from, int64_t to) {
     std::vector<int32_t> moving;
+    RansWriter writer;
     for (int64_t index = from; index < to; ++index) {
+      Chunk& chunk = coded[static_cast<size_t>(index)];
       moving.clear();
+      bool all_zero = true;
       const int64_t end = std::min(nodes, (index + 1) * chunk_nodes);
       for (auto place = static_cast<int32_t>(index * chunk_nodes); place < end; ++place) {
         if (motion_.Holds(predictor_.pieces()[place])) continue;
-        const auto residual = residuals_.begin() + 3 * place;
-        moving.insert(moving.end(), residual, residual + 3);
+        moving.push_back(place);
+        const int32_t* r = residuals_.data() + 3 * static_cast<size_t>(place);
+        all_zero &= (r[0] | r[1] | r[2]) == 0;
       }
-      const std::string planes = ToBytePlanes(moving);
-      Chunk& chunk = coded[static_cast<size_t>(index)];
-      chunk.raw_bytes = static_cast<uint32_t>(planes.size());
-      if (planes.empty()) continue;
-      chunk.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / moving.size()));
+      if (!rans) {
+        std::vector<int32_t> values;
+        values.reserve(3 * moving.size());
+        for (const int32_t place : moving) {
+          const auto r = residuals_.begin() + 3 * place;
+          values.insert(values.end(), r, r + 3);
+        }
+        const std::string planes = ToBytePlanes(values);
+        chunk.raw_bytes = static_cast<uint32_t>(planes.size());
+        if (!planes.empty()) {
+          chunk.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / values.size()));
+        }
+      } else if (all_zero) {
+        ResidualCoder::SkipZeros(moving, next.activities, chunk.counts);
+      } else {
+        writer.Clear();
+        coder->Encode(moving, residuals_, next.activities, chunk.counts, writer);
+        chunk.raw_bytes = static_cast<uint32_t>(12 * moving.size());
+        chunk.coded = writer.Finish();
+      }
     }
   });
   for (int64_t index = 0; index < chunks; ++index) {
@@ -186,6 +239,7 @@ void InterpolationEncoder::AppendPositions(FrameHeader& header, std::string& bod
                    .coded = chunk.coded},
                   body);
     ++header.section_count;
+    if (rans) next.counts.Add(chunk.counts);
   }
 }
 

@@ -30,9 +30,10 @@ class InterpolationEncoder {
   bool AllHold(const StreamState& state) const;
 
   // Appends the motion and positions sections of a key or delta frame with these broken edges that
-  // follows `state`, and gives the positions that a decoder will have.
+  // follows `state`, and gives the positions and the history that a decoder will have.
   void Encode(bool key, std::span<const int32_t> broken, const StreamState& state,
-              FrameHeader& header, std::string& body, std::vector<int32_t>& next);
+              FrameHeader& header, std::string& body, std::vector<int32_t>& next,
+              ResidualHistory& next_history);
 
   // The frame that was encoded, or a hold, is now the last.
   void Accept(FrameKind kind);
@@ -41,7 +42,9 @@ class InterpolationEncoder {
   bool Stays(const StreamState& state, size_t place) const;
   void ChooseHolds(const StreamState& state);
   Continuation Choose(int64_t group, std::span<const int32_t> next);
-  void AppendPositions(FrameHeader& header, std::string& body) const;
+  void ChooseClasses();
+  void AppendPositions(bool fresh, const ResidualHistory& history, FrameHeader& header,
+                       std::string& body, ResidualHistory& next) const;
 
   StreamHeader header_;
   InterpolationPredictor predictor_;

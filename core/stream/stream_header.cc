@@ -35,8 +35,10 @@ bool IsKnown(const StreamHeader& header) {
       header.order_id == kOrderClient && header.predictor_id == kPredictorTemporal;
   const bool interpolation =
       header.order_id == kOrderMortonLevel && header.predictor_id == kPredictorInterpolation;
-  return header.view_id == kViewState && header.coder_id == kCoderZstdPlanes &&
-         (temporal || interpolation);
+  return header.view_id == kViewState &&
+         ((temporal && header.coder_id == kCoderZstdPlanes) ||
+          (interpolation &&
+           (header.coder_id == kCoderZstdPlanes || header.coder_id == kCoderContextRans)));
 }
 
 void CheckRange(absl::string_view field, double value, double low, double high, Faults& faults) {

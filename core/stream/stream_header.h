@@ -21,6 +21,7 @@ inline constexpr uint16_t kOrderMortonLevel = 2;        // from coarse to fine (
 inline constexpr uint16_t kPredictorTemporal = 1;       // rest, last frame, or linear, by chunk
 inline constexpr uint16_t kPredictorInterpolation = 2;  // from coarser nodes; needs order 2
 inline constexpr uint16_t kCoderZstdPlanes = 1;         // zstd over byte planes
+inline constexpr uint16_t kCoderContextRans = 2;        // residual_coder.h; needs predictor 2
 inline constexpr uint16_t kViewState = 1;               // every node and every broken edge
 inline constexpr uint64_t kKnownRequiredFeatures = 0;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "absl/strings/string_view.h"
+#include "core/stream/residual_model.h"
 #include "core/stream/stream_header.h"
 
 namespace cleave {
@@ -25,6 +26,7 @@ struct StreamState {
   std::vector<int32_t> previous;
   bool has_previous = false;
   std::vector<int32_t> broken_edges;  // ascending
+  ResidualHistory residuals;          // with coder 2
 };
 
 // Coordinates stay within this, so that a linear continuation and its residual fit.

@@ -7,6 +7,8 @@ import struct
 
 import numpy as np
 
+from cleave.residuals import CLASSES
+
 MAX_QUANTISED = 2**30 - 1
 UNITS_PER_STEP = 64
 
@@ -255,11 +257,12 @@ def _weights(there, offsets, squares):
 
 
 class Motion:
-    """Section 6.4. holds: whether each piece does; continuations: (a, b, c) of each group."""
+    """Section 6.4. holds: whether each piece does; continuations: (a, b, c) of each group;
+    classes: of each group for coder 2, or None."""
 
     _NAMED = ((64, 0, 0), (128, -64, 0), (96, -32, 0), (0, 0, 64))
 
-    def __init__(self, raw, key, pieces, groups):
+    def __init__(self, raw, key, has_classes, pieces, groups):
         """Raises ValueError for bytes that are not a motion."""
         self.holds = np.zeros(pieces, bool)
         self.continuations = [self._NAMED[3]] * groups
@@ -290,6 +293,12 @@ class Motion:
                     raise ValueError("motion section has values out of range")
                 self.continuations.append(listed)
                 at += 6
+        self.classes = None
+        if has_classes:
+            self.classes = np.frombuffer(raw[at : at + groups], "u1")
+            if len(self.classes) != groups or (self.classes >= CLASSES).any():
+                raise ValueError("motion section has values out of range")
+            at += groups
         if at != len(raw):
             raise ValueError("motion section is longer than its groups")
 

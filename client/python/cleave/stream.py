@@ -21,6 +21,7 @@ import zstandard
 
 from cleave.checksums import crc32c, xxh3_64
 from cleave.interpolation import UNITS_PER_STEP, Motion, Predictor
+from cleave.residuals import ResidualHistory
 
 MAX_QUANTISED = 2**30 - 1
 MAX_TOPOLOGY_EDGES = 262144
@@ -28,7 +29,7 @@ MAX_TOPOLOGY_EDGES = 262144
 KEY, DELTA, HOLD = 1, 2, 3
 _TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION = 1, 2, 3, 4
 _REST, _LAST, _LINEAR, _INTERPOLATION = 1, 2, 3, 4
-_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1))  # order, predictor, coder, view
+_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1))  # order, predictor, coder, view
 
 
 class StreamError(Exception):
@@ -259,6 +260,7 @@ class FrameDecoder:
             edges = _checked_edges(edges, self.header)
             self._predictor = Predictor(rest, edges)
             self._rest = rest[self._predictor.order.nodes]
+        self._history = ResidualHistory(0)
         self._previous = None
         self._quantised = None
         self._tolerance = None
@@ -279,12 +281,13 @@ class FrameDecoder:
             raise DamagedError("topology sections stand behind others")
         others = sections[len(topology) :]
         broken = self._decode_topology(header, topology)
+        history = self._history
         if header.kind == HOLD:
             if sections:
                 raise DamagedError("a hold frame has sections")
             quantised = self._quantised
         elif self._predictor is not None:
-            quantised = self._interpolate(header, others, broken)
+            quantised, history = self._interpolate(header, others, broken)
         else:
             quantised = self._decode_positions(header, others)
         if header.state_hash != self._hash(header, quantised, broken):
@@ -294,6 +297,7 @@ class FrameDecoder:
         if header.kind == KEY:
             self._previous = None if self._predictor is None else quantised
         self._quantised = quantised
+        self._history = history
         self._tolerance = header.tolerance
         self.frame = header.frame
         self.epoch = header.epoch
@@ -387,7 +391,7 @@ class FrameDecoder:
         return np.floor((self._rest - self.header.origin) / unit + 0.5)
 
     def _interpolate(self, header, sections, broken):
-        """FORMAT.md sections 6.4 and 6.5."""
+        """FORMAT.md sections 6.4 and 6.5: positions and the history after them."""
         nodes, chunk_nodes = self.header.nodes, self.header.chunk_nodes
         stencils, groups = self._predictor.stencils, len(self._predictor.order.begins) - 1
         if len(sections) != 1 + -(-nodes // chunk_nodes):
@@ -398,13 +402,18 @@ class FrameDecoder:
         if (
             (motion.type, motion.prediction, motion.first) != (_MOTION, 0, 0)
             or motion.count != groups
-            or not 1 <= motion.raw_bytes <= 1 + (pieces + 7) // 8 + 7 * groups
+            or not 1 <= motion.raw_bytes <= 1 + (pieces + 7) // 8 + 8 * groups
         ):
             raise DamagedError("motion section does not fit its frame")
+        key = header.kind == KEY
+        has_classes = self.header.coder == 2 and (key or self._history.fresh)
         try:
-            motion = Motion(_decode_parts(motion, 1), header.kind == KEY, pieces, groups)
+            motion = Motion(_decode_parts(motion, 1), key, has_classes, pieces, groups)
         except ValueError as error:
             raise DamagedError(str(error)) from error
+        history = self._history
+        if self.header.coder == 2:
+            history = history.begin(key, motion.classes, self._predictor.order.group)
 
         moving = ~motion.holds[stencils.piece]
         residuals = np.zeros((nodes, 3), "i8")
@@ -412,19 +421,26 @@ class FrameDecoder:
             first = index * chunk_nodes
             count = min(chunk_nodes, nodes - first)
             coded = np.flatnonzero(moving[first : first + count]) + first
-            planes, rest = divmod(chunk.raw_bytes, max(3 * len(coded), 1))
             if (
                 (chunk.type, chunk.prediction) != (_POSITIONS, _INTERPOLATION)
                 or (chunk.first, chunk.count) != (first, count)
-                or rest != 0
-                or planes > 4
+                or chunk.coder != self.header.coder
             ):
                 raise DamagedError("positions section does not fit its frame")
-            residuals[coded] = _residuals_of_planes(chunk, planes, len(coded))
+            if self.header.coder == 2:
+                try:
+                    residuals[coded] = history.decode(chunk.raw_bytes, chunk.coded, coded)
+                except ValueError as error:
+                    raise DamagedError(str(error)) from error
+            else:
+                planes, rest = divmod(chunk.raw_bytes, max(3 * len(coded), 1))
+                if rest != 0 or planes > 4:
+                    raise DamagedError("positions section does not fit its frame")
+                residuals[coded] = _residuals_of_planes(chunk, planes, len(coded))
         before = None if self._previous is None else self._previous.astype("i8")
         last = None if self._quantised is None else self._quantised.astype("i8")
         q = self._predictor.decode(
-            header.kind == KEY,
+            key,
             motion,
             residuals,
             self._quantised_rest(header).astype("i8"),
@@ -433,7 +449,7 @@ class FrameDecoder:
         )
         if np.abs(q).max() > MAX_QUANTISED:
             raise DamagedError("a decoded coordinate is out of range")
-        return q.astype("<i4")
+        return q.astype("<i4"), history.finish() if self.header.coder == 2 else history
 
     def _hash(self, header, quantised, broken):
         fields = struct.pack(

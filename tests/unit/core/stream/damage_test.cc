@@ -321,7 +321,7 @@ TEST_P(Damage, StreamsOfLaterVersionsAreReadOnlyIfTheyCanBe) {
   EXPECT_EQ(open(later), absl::StatusCode::kInvalidArgument);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ids, Damage, ::testing::Values(Ids{1, 1}, Ids{2, 1}),
+INSTANTIATE_TEST_SUITE_P(Ids, Damage, ::testing::Values(Ids{1, 1}, Ids{2, 1}, Ids{2, 2}),
                          [](const ::testing::TestParamInfo<Ids>& ids) {
                            return "Predictor" + std::to_string(ids.param.predictor) + "Coder" +
                                   std::to_string(ids.param.coder);

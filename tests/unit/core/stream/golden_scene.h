@@ -19,6 +19,7 @@ struct GoldenStream {
 inline constexpr GoldenStream kGoldenStreams[] = {
     {"temporal_zstd", 1, 1, 90, 150},
     {"interpolation_zstd", 2, 1, 200, 1015},
+    {"interpolation_rans", 2, 2, 200, 1015},
 };
 
 inline constexpr char kGoldenDirectory[] = CLEAVE_SOURCE_DIR "/tests/unit/core/stream/golden/";

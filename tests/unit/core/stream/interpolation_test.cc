@@ -228,7 +228,8 @@ TEST_P(Interpolation, AMeshWithOtherEdgesIsRefused) {
   expect_refused(other);
 }
 
-INSTANTIATE_TEST_SUITE_P(Coders, Interpolation, ::testing::Values(kCoderZstdPlanes),
+INSTANTIATE_TEST_SUITE_P(Coders, Interpolation,
+                         ::testing::Values(kCoderZstdPlanes, kCoderContextRans),
                          [](const ::testing::TestParamInfo<uint16_t>& coder) {
                            return "Coder" + std::to_string(coder.param);
                          });

@@ -110,6 +110,10 @@ class InterpolationZstdTest(GoldenTests, unittest.TestCase):
                 stream.FrameDecoder(self.file.header_bytes, self.rest, edges)
 
 
+class InterpolationRansTest(GoldenTests, unittest.TestCase):
+    NAME = "interpolation_rans"
+
+
 class ChecksumsTest(unittest.TestCase):
     def test_crc32c_is_castagnoli_for_every_way_through(self):
         self.assertEqual(checksums.crc32c(b"123456789"), 0xE3069283)
