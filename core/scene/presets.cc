@@ -105,13 +105,13 @@ MaterialPreset Porcelain() {
 
 MaterialPreset Gold() {
   MaterialPreset preset = Preset(
-      "gold", "pure gold, annealed", {78e9, 0.44, 19300, 180e6},
+      "gold", "pure gold, annealed", {78e9, 0.44, 19300, 189e6},
       {"modulus, Poisson's ratio, density: WebElements, gold: 78 GPa, 0.44, 19 300 kg/m^3",
-       "strength and elongation: 18 000 psi (124 MPa) and 45 % when annealed, usual in jewellers' "
-       "tables; derived: true stress at break, so that a bar breaks there",
-       "yield: adapted, 30 MPa, of the order usual for annealed gold; hardening: derived, linear "
-       "from yield to the true stress at break"});
-  preset.material.plasticity = Plasticity{.yield_stress = 30e6, .hardening = 406e6};
+       "strength and elongation: 130 MPa and 45 %, wrought and annealed, Metals Handbook, "
+       "9th edition, volume 2; derived: true stress at break, so that a bar breaks there",
+       "yield: order of magnitude, 30 MPa; sources scatter, and worked gold yields at 200 MPa; "
+       "hardening: derived, linear from yield to the true stress at break"});
+  preset.material.plasticity = Plasticity{.yield_stress = 30e6, .hardening = 428e6};
   return preset;
 }
 
@@ -122,12 +122,11 @@ MaterialPreset GoldCopper() {
       {"strength and elongation: 550 MPa and 40 % when quenched after annealing, of the order that "
        "Rapson reviews, The metallurgy of the coloured carat gold alloys, Gold Bulletin 23 (1990); "
        "derived: true stress at break, so that a bar breaks there",
-       "yield: adapted, 300 MPa, as usual for the alloy; hardening: derived, linear from yield to "
-       "the "
-       "true stress at break",
-       "modulus: derived, mean of gold and copper, half of the atoms each; MakeItFrom.com has 110 "
-       "GPa "
-       "and Poisson's ratio 0.40 for ASTM B541, an alloy of 71 % gold",
+       "yield: order of magnitude, 300 MPa; hardening: derived, linear from yield to the true "
+       "stress at break",
+       "modulus: derived, mean of gold and copper, half of the atoms each; MakeItFrom.com has "
+       "110 GPa and Poisson's ratio 0.40 for ASTM B541, 71.5 % gold and 14.5 % copper hardened by "
+       "8.5 % platinum, which also yields at more, 480 MPa",
        "density: derived from those of gold and copper by weight"});
   preset.material.plasticity = Plasticity{.yield_stress = 300e6, .hardening = 1.4e9};
   return preset;

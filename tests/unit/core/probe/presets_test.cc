@@ -24,7 +24,7 @@ TEST(MaterialPresets, BreakWhereTheirSourcesSay) {
                                  {"dry_wood", 11.9e9, 70e6, 0.006},
                                  {"damp_wood", 9.3e9, 39e6, 0.0045},
                                  {"rubber", 1.5e6, 3e6, 5},
-                                 {"gold", 78e9, 125e6, 0.45},
+                                 {"gold", 78e9, 130e6, 0.45},
                                  {"gold_copper", 100e9, 550e6, 0.40},
                                  {"porcelain", 70e9, 35e6, 0.0005},
                                  {"glass", 70e9, 45e6, 0.00064},
