@@ -8,6 +8,7 @@
 #include "tests/scenes/ductile_bar.h"
 #include "tests/scenes/fibre_bar.h"
 #include "tests/scenes/locality.h"
+#include "tests/scenes/meat_loaf.h"
 #include "tests/scenes/slab_trio.h"
 
 namespace cleave {
@@ -32,6 +33,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakeBranch,
        MeasureBranch},
       {"locality", "Fig. 5, sec. 5", {"without", "with"}, MakeLocality, MeasureLocality},
+      {"meat_loaf", "Fig. 2", {"loaf", "meat"}, MakeMeatLoaf, MeasureMeatLoaf},
       {"column", "sec. 7.7.2", {"sheet", "plain"}, MakeColumn, MeasureColumn},
   };
   return kKinds;

@@ -6,10 +6,20 @@
 #include "core/mesh/procedural_shapes.h"
 #include "core/mesh/tet_mesh.h"
 
-// Bodies that Cleave does not mesh by itself: its cylinders, warped. All are meshed in
+// Bodies that Cleave does not mesh by itself: its boxes and cylinders, warped. All are meshed in
 // either layout and pass CheckAndOrientMesh without an error; lengths in metres.
 
 namespace cleave {
+
+// |x/a|^n + |y/b|^n <= 1 in plan, a and b half of `size`, of even thickness; about the origin.
+absl::StatusOr<TetMesh> SuperellipseSlab(const Vec3& size, double exponent,
+                                         const MeshResolution& resolution);
+
+// |x/a|^n + |y/b|^n + |z/c|^n <= 1; about the origin. Depth below the surface as a share of the
+// half size, 0 at the surface and 1 in the middle, is SuperellipsoidDepth.
+absl::StatusOr<TetMesh> SuperellipsoidLoaf(const Vec3& size, double exponent,
+                                           const MeshResolution& resolution);
+double SuperellipsoidDepth(const Vec3& position, const Vec3& size, double exponent);
 
 // A tapered stick along z from the origin, with the stubs of two twigs.
 struct BranchShape {
