@@ -388,6 +388,9 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
         *scene.contact, NodeStiffness(scene.materials, material_of, model), model));
   }
 
+  // Sleep of pieces at rest.
+  model.sleep = scene.sleep;
+
   // Fracture, where something can break.
   if (CanBreak(scene)) {
     FracturePart& part = model.fracture.emplace();

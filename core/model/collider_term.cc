@@ -219,6 +219,18 @@ void ColliderTerm::BeginStep(double start, double end, const State& state) {
   }
 }
 
+void ColliderTerm::AddInfluences(std::vector<Influence>& influences) const {
+  for (const Candidate& candidate : candidates_) {
+    const auto c = static_cast<size_t>(candidate.collider);
+    if (parts_[c].body) {
+      influences.push_back({candidate.node, static_cast<int32_t>(parts_[c].body->unknown)});
+    } else if (start_poses_[c].turn != end_poses_[c].turn ||
+               start_poses_[c].to != end_poses_[c].to) {
+      influences.push_back({candidate.node, -1});
+    }
+  }
+}
+
 double ColliderTerm::AddForces(const NodalVector& displacements, NodalVector& forces) {
   double energy = 0;
   auto candidate = candidates_.begin();
@@ -382,8 +394,12 @@ void ColliderTerm::Renew(State& state) {
     const Vector spin = (pose.turn * body.mass.axes).transpose() * momentum;
     state.velocities[body.unknown + 1] =
         ToLanes(body.scale.cwiseProduct(spin.cwiseQuotient(body.mass.moments)));
+    // What has not turned keeps its bits.
+    const bool turned =
+        Dot(state.displacements[body.unknown + 1], state.displacements[body.unknown + 1]) > 0;
+    if (turned) turns_[index] = Eigen::Quaterniond(pose.turn).normalized();
     state.displacements[body.unknown + 1] = Splat(0);
-    turns_[index++] = Eigen::Quaterniond(pose.turn).normalized();
+    ++index;
   }
 }
 

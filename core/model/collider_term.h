@@ -52,6 +52,7 @@ class ColliderTerm final : public NodeTerm {
   int64_t bytes() const override;
   double LongestPart(double start, double end, const State& state) const override;
   void BeginStep(double start, double end, const State& state) override;
+  void AddInfluences(std::vector<Influence>& influences) const override;
   double AddForces(const NodalVector& displacements, NodalVector& forces) override;
   void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) override;
   double RoundingForce(const NodalVector& displacements) const override;

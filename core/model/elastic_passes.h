@@ -98,6 +98,20 @@ class ElasticTerm : public Shape<T>::Term {
     return false;
   }
 
+  double LeaveOut(std::span<uint8_t> asleep, const NodalVector& displacements) override {
+    tets_.kept.reset();
+    ElasticTerm::ChooseBranches(displacements);
+    KeepAwake(tets_, asleep);
+    chunk_energy_.assign(static_cast<size_t>(tets_.pass_chunk_count()), 0.0);
+    double energy = 0;
+    for (int64_t b = 0; !asleep.empty() && b < tets_.batch_count(); ++b) {
+      if (asleep[static_cast<size_t>(tets_.tet_at(b * TetBatches<T>::kLanes))] == 0) continue;
+      energy += Sum(Fold(tets_.batches[static_cast<size_t>(b)].volume *
+                         EnergyDensity(b, DeformationOf(b, displacements).g)));
+    }
+    return energy * stress_unit_ * std::pow(tets_.length_unit, 3);
+  }
+
   double AddForces(const NodalVector& displacements, NodalVector& forces) override {
     const double force_unit = stress_unit_ * tets_.length_unit * tets_.length_unit;
     ForEachChunk(tets_, [&](int64_t chunk, int64_t begin, int64_t end) {

@@ -116,6 +116,12 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   const bool breaks = CanBreak(scene);
   if (scene.contact)
     add("contact", FragmentContact::BytesOf(nodes, edges) + (uniform ? 1 : nodes) * kDouble);
+  if (scene.sleep) {
+    // Where every node is a piece: labels and groups, quiet seconds, sums over pieces; what is held
+    // where motions hold it; which tets are left out.
+    const int64_t of_node = 2 * kInt + kDouble + 3 + 7 * kNodal / 2;
+    add("sleep", nodes * (of_node + (scene.motions.empty() ? 0 : kNodal)) + tets);
+  }
   bool directional = false;
   for (const Material& material : scene.materials) {
     for (const FibreFamily& family : material.fibres)

@@ -147,6 +147,18 @@ void FragmentContact::BeginStep(double start, double end, const State& state) {
   }
 }
 
+void FragmentContact::AddInfluences(std::vector<Influence>& influences) const {
+  for (const Pair& pair : sighted_) influences.push_back({pair.first, pair.second});
+  if (piece_count_ < 2) return;
+  // Crack faces whose edge was longer than the sight.
+  for (const Spring& spring : springs_) {
+    const auto [i, j] = incidence_.edges[static_cast<size_t>(spring.edge)];
+    if (pieces_[static_cast<size_t>(i)] == pieces_[static_cast<size_t>(j)]) continue;
+    const Vector apart = PointOf(i, start_displacements_) - PointOf(j, start_displacements_);
+    if (apart.norm() < spring.length + mean_edge_length_) influences.push_back({i, j});
+  }
+}
+
 template <typename Push>
 void FragmentContact::ForSprings(const NodalVector& displacements, const Push& push) const {
   const auto press = [&](int32_t i, int32_t j, double length, double stiffness, size_t pair) {

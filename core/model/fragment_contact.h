@@ -37,6 +37,7 @@ class FragmentContact final : public NodeTerm {
   void EdgesBroke(std::span<const int32_t> edges, const NodalVector& displacements) override;
   double LongestPart(double start, double end, const State& state) const override;
   void BeginStep(double start, double end, const State& state) override;
+  void AddInfluences(std::vector<Influence>& influences) const override;
   double AddForces(const NodalVector& displacements, NodalVector& forces) override;
   void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) override;
   double RoundingForce(const NodalVector& displacements) const override;

@@ -27,10 +27,17 @@ class LoadTerm : public NodeTerm {
   absl::string_view name() const override { return "load"; }
 
  protected:
-  // Times the load, over a step to `end` (s).
-  double Intensity(double end, const State& state) const {
+  // Times the load, over a step from `start` to `end` (s).
+  double Intensity(double start, double end, const State& state) {
     const bool released = release_ >= 0 && state.released[static_cast<size_t>(release_)] != 0;
-    return released ? 0 : IntensityAt(keyframes_, end);
+    const double intensity = IntensityAt(keyframes_, end);
+    changes_ = !released && intensity != IntensityAt(keyframes_, start);
+    return released ? 0 : intensity;
+  }
+  // Of a load on these nodes.
+  void AddChange(const std::vector<int32_t>& nodes, std::vector<Influence>& influences) const {
+    if (!changes_) return;
+    for (const int32_t node : nodes) influences.push_back({node, -1});
   }
   int64_t keyframe_bytes() const {
     return static_cast<int64_t>(keyframes_.size() * sizeof(LoadKeyframe));
@@ -39,6 +46,7 @@ class LoadTerm : public NodeTerm {
  private:
   const std::vector<LoadKeyframe> keyframes_;
   const int32_t release_;
+  bool changes_ = false;  // within the step
 };
 
 // A fixed vector times a weight a node: a share of a point force, or an area of a traction.
@@ -73,8 +81,12 @@ class DeadLoadTerm final : public LoadTerm {
     Weigh([&](int32_t tet) { return factors[static_cast<size_t>(tet)] > 0; });
   }
 
-  void BeginStep(double, double end, const State& state) override {
-    force_ = Intensity(end, state) * vector_;
+  void AddInfluences(std::vector<Influence>& influences) const override {
+    AddChange(nodes_, influences);
+  }
+
+  void BeginStep(double start, double end, const State& state) override {
+    force_ = Intensity(start, end, state) * vector_;
     for (size_t i = 0; i < nodes_.size(); ++i)
       start_[i] = state.displacements[static_cast<size_t>(nodes_[i])];
   }
@@ -174,8 +186,12 @@ class PressureTerm final : public LoadTerm {
     FindLive([&](int32_t tet) { return factors[static_cast<size_t>(tet)] > 0; });
   }
 
-  void BeginStep(double, double end, const State& state) override {
-    pressure_ = full_pressure_ * Intensity(end, state);
+  void AddInfluences(std::vector<Influence>& influences) const override {
+    AddChange(nodes_, influences);
+  }
+
+  void BeginStep(double start, double end, const State& state) override {
+    pressure_ = full_pressure_ * Intensity(start, end, state);
     if (pressure_ == 0 || nodes_.empty()) return;
     apex_ = Splat(0);
     for (size_t i = 0; i < nodes_.size(); ++i) {

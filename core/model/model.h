@@ -81,6 +81,7 @@ struct Model {
   std::vector<PrescribedMotion> motions;
   std::vector<ReleaseRule> releases;  // of motions and loads
   std::optional<FracturePart> fracture;
+  std::optional<Sleep> sleep;
   Quality quality;
 
   int64_t node_count() const { return mesh->node_count(); }

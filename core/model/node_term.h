@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
@@ -20,6 +21,12 @@ struct NodeTermWork {
   double stored_energy = 0;  // J, that it holds at the end of the step
   double dissipation = 0;    // J, that it took out for good, as friction does
   double integration = 0;    // J, that backward Euler took out of what it stores
+};
+
+// What may push a node in a step: another unknown, or -1, something outside that changes.
+struct Influence {
+  int32_t node;
+  int32_t other;
 };
 
 // Forces on nodes from outside the tets: loads, contact. Ids are the solver's. Loops run on the
@@ -53,6 +60,9 @@ class NodeTerm {
   // that friction goes by. A step that fails is attempted again in halves, so this replaces what
   // the last call fixed and changes nothing that EndStep keeps.
   virtual void BeginStep(double start, double end, const State& state) = 0;
+  // After BeginStep: adds what this term knows to be near its nodes in the step, whether it pushes
+  // yet or not, and what changes. Nothing for what rests.
+  virtual void AddInfluences(std::vector<Influence>& influences) const { (void)influences; }
   // Adds -dE/dx (N) at displacements from rest (m) to `forces`; returns the energy E, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
   // Adds the second derivative of E or a positive semidefinite stand-in for it. Nothing where

@@ -44,16 +44,11 @@ class PlasticPasses final : public ElasticTerm<T, Law, Fibres, PlasticShape> {
   }
 
   void Flow(const NodalVector& displacements) override {
-    chunk_work_.resize(static_cast<size_t>(this->tets_.chunk_count()));
-    ParallelFor(this->tets_.chunk_count(), 1, [&](int64_t begin, int64_t end) {
-      for (int64_t chunk = begin; chunk < end; ++chunk) {
-        const int64_t first = chunk * TetBatches<T>::kChunkBatches;
-        const int64_t last =
-            std::min(first + TetBatches<T>::kChunkBatches, this->tets_.batch_count());
-        FlowWork work;
-        for (int64_t b = first; b < last; ++b) FlowBatch(b, displacements, work);
-        chunk_work_[static_cast<size_t>(chunk)] = work;
-      }
+    chunk_work_.resize(static_cast<size_t>(this->tets_.pass_chunk_count()));
+    ForEachChunk(this->tets_, [&](int64_t chunk, int64_t first, int64_t last) {
+      FlowWork work;
+      for (int64_t b = first; b < last; ++b) FlowBatch(b, displacements, work);
+      chunk_work_[static_cast<size_t>(chunk)] = work;
     });
   }
 

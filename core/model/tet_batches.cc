@@ -91,10 +91,49 @@ TetBatches<T> BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
   return result;
 }
 
+template <typename T>
+void KeepAwake(TetBatches<T>& tets, std::span<uint8_t> asleep) {
+  tets.kept.reset();
+  if (asleep.empty()) return;
+  const auto is_awake = [&](int64_t batch) {
+    for (int lane = 0; lane < tets.lanes(batch); ++lane) {
+      if (asleep[static_cast<size_t>(tets.tet_at(batch * TetBatches<T>::kLanes + lane))] == 0)
+        return true;
+    }
+    return false;
+  };
+  BatchRuns kept;
+  for (const std::vector<int32_t>& color : tets.coloring.colors) {
+    std::vector<std::array<int32_t, 2>>& chunks = kept.colors.emplace_back();
+    for (const int32_t chunk : color) {
+      const int64_t first = chunk * TetBatches<T>::kChunkBatches;
+      const int64_t last = std::min(first + TetBatches<T>::kChunkBatches, tets.batch_count());
+      const auto first_run = static_cast<int32_t>(kept.runs.size());
+      bool runs_on = false;
+      for (int64_t batch = first; batch < last; ++batch) {
+        if (!is_awake(batch)) {
+          runs_on = false;
+          continue;
+        }
+        for (int lane = 0; lane < tets.lanes(batch); ++lane)
+          asleep[static_cast<size_t>(tets.tet_at(batch * TetBatches<T>::kLanes + lane))] = 0;
+        if (!runs_on) kept.runs.push_back({batch, batch});
+        runs_on = true;
+        kept.runs.back()[1] = batch + 1;
+      }
+      const auto end_run = static_cast<int32_t>(kept.runs.size());
+      if (end_run > first_run) chunks.push_back({first_run, end_run});
+    }
+  }
+  tets.kept = std::move(kept);
+}
+
 template struct TetBatches<Double4>;
 template struct TetBatches<Float8>;
 template TetBatches<Double4> BuildTetBatches(const TetMesh&, const Incidence&,
                                              std::vector<int32_t>);
+template void KeepAwake(TetBatches<Double4>&, std::span<uint8_t>);
+template void KeepAwake(TetBatches<Float8>&, std::span<uint8_t>);
 template TetBatches<Float8> BuildTetBatches(const TetMesh&, const Incidence&, std::vector<int32_t>);
 
 }  // namespace cleave

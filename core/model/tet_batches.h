@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/lanes.h"
@@ -29,6 +31,13 @@ struct TetBatch {
   T volume;      // length_unit^3, rest volume times damage factor; 0 in lanes that hold no tet
 };
 
+// Runs of batches that passes keep to, each within a chunk.
+struct BatchRuns {
+  std::vector<std::array<int64_t, 2>> runs;  // first and end batch
+  // Of each colour, for each chunk: its first and end run, which share nodes.
+  std::vector<std::vector<std::array<int32_t, 2>>> colors;
+};
+
 // Tets of a mesh in batches, in order, and the chunks in which passes over them run.
 template <typename T>
 struct TetBatches {
@@ -44,6 +53,7 @@ struct TetBatches {
   double length_unit = 1;
   std::vector<TetBatch<T>> batches;
   ChunkColoring coloring;
+  std::optional<BatchRuns> kept;  // while other batches are left out
 
   // The tet at a place, which is kLanes * batch + lane.
   int64_t tet_at(int64_t place) const {
@@ -54,6 +64,10 @@ struct TetBatches {
 
   int64_t batch_count() const { return static_cast<int64_t>(batches.size()); }
   int64_t chunk_count() const { return (batch_count() + kChunkBatches - 1) / kChunkBatches; }
+  // What ForEachChunk counts.
+  int64_t pass_chunk_count() const {
+    return kept ? static_cast<int64_t>(kept->runs.size()) : chunk_count();
+  }
   int lanes(int64_t batch) const {
     const int64_t left = tet_count - batch * kLanes;
     return static_cast<int>(left < kLanes ? left : kLanes);
@@ -64,6 +78,11 @@ struct TetBatches {
 template <typename T>
 TetBatches<T> BuildTetBatches(const TetMesh& mesh, const Incidence& incidence,
                               std::vector<int32_t> tets);
+
+// Keeps passes to the batches of which some tet is not `asleep` (a tet of the mesh each; empty:
+// none is), and sets the entries of all tets in those to 0.
+template <typename T>
+void KeepAwake(TetBatches<T>& tets, std::span<uint8_t> asleep);
 
 // m^3.
 double RestVolume(const TetMesh& mesh, int64_t tet);
@@ -114,9 +133,24 @@ Matrix3<T> DisplacementGradient(const Matrix3<T>& moves, const Matrix3<T>& gradi
   return result;
 }
 
-// Runs body(chunk, first batch, end batch) over all chunks in the order of the colouring.
+// Runs body(chunk, first batch, end batch) over all chunks in the order of the colouring; where
+// batches are left out, over the runs that are kept instead.
 template <typename T, typename Body>
 void ForEachChunk(const TetBatches<T>& tets, const Body& body) {
+  if (tets.kept) {
+    for (const std::vector<std::array<int32_t, 2>>& color : tets.kept->colors) {
+      ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
+        for (int64_t k = begin; k < end; ++k) {
+          const auto [first_run, end_run] = color[static_cast<size_t>(k)];
+          for (int64_t run = first_run; run < end_run; ++run) {
+            const auto [first, last] = tets.kept->runs[static_cast<size_t>(run)];
+            body(run, first, last);
+          }
+        }
+      });
+    }
+    return;
+  }
   for (const std::vector<int32_t>& color : tets.coloring.colors) {
     ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
       for (int64_t k = begin; k < end; ++k) {
@@ -128,9 +162,14 @@ void ForEachChunk(const TetBatches<T>& tets, const Body& body) {
   }
 }
 
-// Runs body(first batch, end batch) over all batches; for passes that write only to their own tets.
+// Runs body(first batch, end batch) over all batches that are not left out; for passes that write
+// only to their own tets.
 template <typename T, typename Body>
 void ForEachBatch(const TetBatches<T>& tets, const Body& body) {
+  if (tets.kept) {
+    ForEachChunk(tets, [&](int64_t, int64_t first, int64_t last) { body(first, last); });
+    return;
+  }
   ParallelFor(tets.batch_count(), 2048 / TetBatches<T>::kLanes, body);
 }
 

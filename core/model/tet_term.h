@@ -54,6 +54,15 @@ class TetTerm {
   // tet of the mesh), without the damage factor.
   virtual void AddEffectiveStress(const NodalVector& displacements,
                                   std::span<Eigen::Matrix3d> stresses) const = 0;
+  // Leaves tets of pieces that sleep out of every pass until the next call. `asleep` holds a tet of
+  // the mesh each, not 0 for those that may be left out, or nothing: then none is. Sets those of
+  // the term's tets to 0 that it keeps all the same. Returns the energy at these displacements of
+  // those that it leaves out, J. By default it keeps all.
+  virtual double LeaveOut(std::span<uint8_t> asleep, const NodalVector& displacements) {
+    (void)asleep;
+    (void)displacements;
+    return 0;
+  }
   // Scales energy, force and stiffness of a tet by `factor`, in place of any earlier factor;
   // nothing where the term does not act in it.
   virtual void SetDamageFactor(int64_t tet, double factor) = 0;

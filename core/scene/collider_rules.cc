@@ -144,6 +144,13 @@ void CheckContact(const Scene& scene, Faults& faults) {
   check.Within("contact.friction", scene.contact->friction, 0, limits::kMaxFriction);
 }
 
+void CheckSleep(const Scene& scene, Faults& faults) {
+  if (!scene.sleep.has_value()) return;
+  Checker check(faults);
+  check.Above("sleep.speed", scene.sleep->speed, 0, limits::kMaxSleepSpeed);
+  check.Above("sleep.time", scene.sleep->time, 0, limits::kMaxSleepSeconds);
+}
+
 void CheckColliders(const Scene& scene, Faults& faults) {
   Checker check(faults);
   if (!check.List("colliders", scene.colliders.size(), limits::kMaxColliders)) return;

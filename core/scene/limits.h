@@ -53,6 +53,9 @@ inline constexpr double kMinContactStiffness = 0.01;       // softer, bodies pas
 inline constexpr double kMaxContactStiffness = 1000;       // harder, solves crawl
 inline constexpr double kMaxColliderMass = 1e12;           // kg
 
+inline constexpr double kMaxSleepSpeed = 1;  // m/s; what is faster is not at rest by any measure
+inline constexpr double kMaxSleepSeconds = 3600;  // longer, leave sleep out
+
 inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps
 inline constexpr double kCoarseStepSeconds = 0.1;  // a warning from here on
 inline constexpr double kMinFramesPerSecond = 1e-3;

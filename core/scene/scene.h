@@ -279,6 +279,15 @@ struct Contact {
   double friction = 0;   // Coulomb's coefficient
 };
 
+// When pieces at rest are no longer calculated, until something touches them. At rest is what stays
+// slower than `speed` in the scene's coordinates for `time`, while the forces on it balance and no
+// tet flows; what creeps so slowly stops. The kinetic energy that this takes out counts as
+// dissipated by integration.
+struct Sleep {
+  double speed = 1e-3;  // m/s, of the fastest node
+  double time = 0.25;   // s
+};
+
 // Which stress breaks edges of a material with fibres.
 enum class FractureStress {
   kMatrix,  // that of the isotropic solid, so that cracks follow the fibres
@@ -366,6 +375,7 @@ struct Scene {
   std::optional<Impurities> impurities;
   std::vector<Collider> colliders;
   std::optional<Contact> contact;  // absent: pieces pass through each other
+  std::optional<Sleep> sleep;      // absent: nothing sleeps
   Timing timing;
   Quality quality;
   Output output;

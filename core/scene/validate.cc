@@ -302,6 +302,7 @@ Faults ValidateScene(const Scene& scene) {
   if (scene.impurities.has_value()) CheckImpurities(*scene.impurities, names, faults);
   CheckColliders(scene, faults);
   CheckContact(scene, faults);
+  CheckSleep(scene, faults);
   CheckSettings(scene, faults, check);
   return faults;
 }

@@ -320,6 +320,11 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
   out.Put(scene.quality.max_step_halvings);
   out.Put(static_cast<uint32_t>(scene.quality.precision));
   out.Put(scene.seed);
+  // Of a part that most scenes do not have, only where they have it.
+  if (scene.sleep) {
+    out.Put(scene.sleep->speed);
+    out.Put(scene.sleep->time);
+  }
 
   StateHash hash;
   Update(mesh.rest_positions, hash);

@@ -96,8 +96,9 @@ class BodySimulation final : public Simulation {
     report.friction_dissipation = energies_.friction_dissipation;
     report.integration_dissipation = energies_.integration_dissipation;
     report.fragments = fragments_;
-    report.motion_forces =
-        SumMotionForces(model_, state_.released, stepper_.solver().outer_forces());
+    if (const Resting* resting = stepper_.resting())
+      report.sleeping_pieces = resting->SleepingPieces();
+    report.motion_forces = stepper_.MotionForces(state_);
     if (model_.colliders != nullptr) {
       for (const ColliderPose& pose : model_.colliders->Poses(time(), state_)) {
         const Eigen::Vector3d translation = pose.to - pose.turn * pose.from;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,10 @@ struct FrameReport {
   // elastic and contact energy, and what fracture, plastic flow, friction and integration
   // took out.
   double integration_dissipation = 0;
-  int64_t broken_edges = 0;              // since the start
-  int64_t new_broken_edges = 0;          // in this frame
-  int64_t fragments = 0;                 // node components through unbroken edges, at the end
+  int64_t broken_edges = 0;                // since the start
+  int64_t new_broken_edges = 0;            // in this frame
+  int64_t fragments = 0;                   // node components through unbroken edges, at the end
+  std::optional<int64_t> sleeping_pieces;  // of these, at the end; absent where none may sleep
   std::vector<Vec3> motion_forces;       // N, force that each motion exerts on the body, at the end
   std::vector<ColliderPlace> colliders;  // at the end, in the scene's order
   double assembly_seconds = 0;

@@ -78,7 +78,9 @@ void Breaking::FindStresses(const NodalVector& displacements) {
     }
   });
   ParallelFor(model_.tet_count(), 4096, [&](int64_t begin, int64_t end) {
-    std::fill(stresses_.begin() + begin, stresses_.begin() + end, Eigen::Matrix3d::Zero());
+    for (auto tet = static_cast<size_t>(begin); tet < static_cast<size_t>(end); ++tet) {
+      if (left_out_.empty() || left_out_[tet] == 0) stresses_[tet].setZero();
+    }
   });
   for (const auto& term : model_.tet_terms) term->AddEffectiveStress(displacements, stresses_);
   size_t record = 0;
@@ -86,6 +88,15 @@ void Breaking::FindStresses(const NodalVector& displacements) {
     const auto count = static_cast<size_t>(term->tet_count());
     term->GetPlasticTets(std::span(plastic_tets_).subspan(record, count));
     record += count;
+  }
+}
+
+void Breaking::AddStrandInfluences(std::vector<Influence>& influences) const {
+  if (!model_.fracture->strands) return;
+  for (int32_t tet = 0; tet < model_.tet_count(); ++tet) {
+    if (!fracture_.IsStrand(tet)) continue;
+    const auto& nodes = model_.mesh->tets[static_cast<size_t>(tet)];
+    for (size_t k = 1; k < 4; ++k) influences.push_back({nodes[0], nodes[k]});
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -33,6 +34,14 @@ class Breaking {
 
   // To be called when a step has ended at these displacements (m) and will not be rolled back.
   void EndStep(const NodalVector& displacements);
+
+  // Sets the stresses that break edges, at these displacements (m), in tets that are not left out.
+  void FindStresses(const NodalVector& displacements);
+  // Adds an influence (node_term.h) between the nodes of every strand.
+  void AddStrandInfluences(std::vector<Influence>& influences) const;
+  // Tets (not 0, a tet each; empty: none) that the terms leave out keep the stresses that they
+  // have.
+  void LeaveOut(std::vector<uint8_t> tets) { left_out_ = std::move(tets); }
 
   // The edges that the last pass broke, ascending; until the next.
   std::span<const int32_t> newly_broken() const { return newly_broken_; }
@@ -70,8 +79,6 @@ class Breaking {
   // Broken edges and what they leave of tets: what changes within a step.
   void SaveBroken(ByteWriter& out) const;
   absl::Status LoadBroken(ByteReader& in);
-  // Sets `positions_` and `stresses_`.
-  void FindStresses(const NodalVector& displacements);
 
   // Strengths are those of the unbroken edges.
   void ResetStrengths();
@@ -84,6 +91,7 @@ class Breaking {
   std::vector<Eigen::Matrix3d> stresses_;  // Pa
   std::vector<double> edge_stresses_;      // Pa, where the materials tire
   bool stresses_are_last_ = false;         // those of the last solve
+  std::vector<uint8_t> left_out_;          // a tet each, or empty
   std::span<const int32_t> newly_broken_;
   // Where tets are ductile: records of them, in the order of the plastic terms.
   std::vector<int32_t> plastic_record_of_;  // a tet each

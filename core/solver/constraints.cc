@@ -47,6 +47,20 @@ void ApplyMotions(const Model& model, const std::vector<uint8_t>& released, doub
   }
 }
 
+void AddMotionInfluences(const Model& model, const std::vector<uint8_t>& released, double time,
+                         const NodalVector& displacements, std::vector<Influence>& influences) {
+  for (const PrescribedMotion& motion : model.motions) {
+    if (!Holds(motion, released)) continue;
+    const Keyframe pose = PoseAt(motion, time);
+    for (const int32_t node : motion.nodes) {
+      const auto n = static_cast<size_t>(node);
+      const Double4 way =
+          DisplacementAt(motion, pose, model.mesh->rest_positions[n]) - displacements[n];
+      if (Dot(motion.axes ? way * way : Splat(0), Splat(1)) > 0) influences.push_back({node, -1});
+    }
+  }
+}
+
 std::vector<Vec3> SumMotionForces(const Model& model, const std::vector<uint8_t>& released,
                                   const NodalVector& forces) {
   std::vector<Vec3> sums;

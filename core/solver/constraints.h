@@ -27,6 +27,11 @@ std::vector<FixedNode> FindFixedNodes(const Model& model, const std::vector<uint
 void ApplyMotions(const Model& model, const std::vector<uint8_t>& released, double time,
                   NodalVector& displacements);
 
+// Adds an influence from outside (node_term.h) for every node that a motion takes elsewhere by
+// `time` (s).
+void AddMotionInfluences(const Model& model, const std::vector<uint8_t>& released, double time,
+                         const NodalVector& displacements, std::vector<Influence>& influences);
+
 // Adds up, for each motion, the force on the body over its prescribed coordinates, 0 where it was
 // let go. `forces` (N) are what each node needs from outside to move as it does.
 std::vector<Vec3> SumMotionForces(const Model& model, const std::vector<uint8_t>& released,

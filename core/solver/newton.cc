@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
 
@@ -58,8 +59,15 @@ void NewtonSolver::SetFixedNodes(std::vector<FixedNode> fixed_nodes) {
   pcg_.SetFixedNodes(fixed_nodes_);
 }
 
+void NewtonSolver::SetRuns(std::span<const std::array<int64_t, 2>> runs) {
+  blocks_.SetRuns(runs);
+  pcg_.SetRuns(runs);
+  std::fill(residual_.begin(), residual_.end(), Splat(0));
+  std::fill(search_.begin(), search_.end(), Splat(0));
+}
+
 void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& displacements) {
-  blocks_.Run([&](int64_t begin, int64_t end) {
+  ForAll([&](int64_t begin, int64_t end) {
     std::fill(gradient_.begin() + begin, gradient_.begin() + end, Splat(0));
   });
   elastic_energy_ = 0;
@@ -103,7 +111,7 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
 }
 
 void NewtonSolver::EvaluateNodeTerms(const NodalVector& displacements) {
-  blocks_.Run([&](int64_t begin, int64_t end) {
+  ForAll([&](int64_t begin, int64_t end) {
     std::fill(node_forces_.begin() + begin, node_forces_.begin() + end, Splat(0));
   });
   for (const auto& term : model_.node_terms) {
@@ -268,7 +276,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     bool accepted = false;
     bool at_rounding = false;
     for (int backtrack = 0; backtrack < kMaxBacktracks; ++backtrack, share /= 2) {
-      blocks_.Run([&](int64_t begin, int64_t end) {
+      ForAll([&](int64_t begin, int64_t end) {
         for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
           trial_[node] = displacements[node] + share * search_[node];
       });

@@ -1,7 +1,9 @@
 #ifndef CLEAVE_CORE_SOLVER_NEWTON_H_
 #define CLEAVE_CORE_SOLVER_NEWTON_H_
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -34,6 +36,9 @@ class NewtonSolver {
   // Which coordinates are given from now on: ascending nodes, each once. At first, those of a state
   // in which nothing is released.
   void SetFixedNodes(std::vector<FixedNode> fixed_nodes);
+  // Which unknowns there is anything to do for from now on (block_sums.h); at first, all. Every
+  // coordinate of the others is given.
+  void SetRuns(std::span<const std::array<int64_t, 2>> runs);
 
   // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
   // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
@@ -47,6 +52,8 @@ class NewtonSolver {
   // Of the last Solve that succeeded, at its solution. Forces (N) are what each node needs from
   // outside, besides gravity, to move as it does: 0 up to the residual at free coordinates.
   const NodalVector& outer_forces() const { return gradient_; }
+  // N, of the node terms, there; empty where the model has none.
+  const NodalVector& node_forces() const { return node_forces_; }
   double elastic_energy() const { return elastic_energy_; }
   // J, by which that Solve lowered the incremental potential.
   double decrease() const { return initial_energy_ - energy_; }
@@ -59,6 +66,11 @@ class NewtonSolver {
   int64_t bytes() const;
 
  private:
+  // Runs body(begin, end) over all unknowns, those without a run too.
+  template <typename Body>
+  void ForAll(const Body& body) const {
+    ParallelFor(static_cast<int64_t>(gradient_.size()), 4096, body);
+  }
   // Sets the energies, gradient, residual and their norms at `displacements`.
   void Evaluate(const State& start, double dt, const NodalVector& displacements);
   // Adds the node terms to what Evaluate set.

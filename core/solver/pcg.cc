@@ -96,6 +96,18 @@ void PcgSolver::SetFixedNodes(std::vector<FixedNode> fixed_nodes) {
   if (coarse_.pays()) coarse_.SetFixedNodes(fixed_nodes_);
 }
 
+void PcgSolver::SetRuns(std::span<const std::array<int64_t, 2>> runs) {
+  blocks_.SetRuns(runs);
+  // Nothing moves where no pass goes.
+  std::visit(
+      [](auto& vectors) {
+        for (auto* of : {&vectors.residual, &vectors.direction, &vectors.product,
+                         &vectors.preconditioned, &vectors.solution})
+          std::fill(of->begin(), of->end(), typename std::decay_t<decltype(*of)>::value_type{});
+      },
+      vectors_);
+}
+
 void PcgSolver::Prepare(const StiffnessMatrix& matrix, const NodalVector& positions) {
   // Of the first node from the middle on that is connected or has mass.
   double size = 0;

@@ -1,7 +1,9 @@
 #ifndef CLEAVE_CORE_SOLVER_PCG_H_
 #define CLEAVE_CORE_SOLVER_PCG_H_
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -34,6 +36,9 @@ class PcgSolver {
 
   // Counts from the next Prepare on.
   void SetFixedNodes(std::vector<FixedNode> fixed_nodes);
+  // Leaves out all nodes but those of these runs (block_sums.h), of which every coordinate is
+  // given; in solutions they stay as they are. Call SetFixedNodes too.
+  void SetRuns(std::span<const std::array<int64_t, 2>> runs);
 
   // Takes what preconditions `matrix`; call it whenever the matrix changed. `positions` (m) are
   // about those of the body's nodes.

@@ -14,6 +14,8 @@ namespace {
 // What moves faster than this many parts can follow passes through: a scene that moves a collider
 // at the speed of light shall not take forever.
 constexpr int32_t kMaxParts = 64;
+// A body whose flow takes more than this share of its elastic energy in a step is not at rest.
+constexpr double kFlowing = 1e-9;
 
 }  // namespace
 
@@ -24,6 +26,7 @@ Stepper::Stepper(const Model& model)
       displacements_(model.masses.size()) {
   if (model.fracture) breaking_.emplace(model);
   if (!model.releases.empty()) releases_.emplace(model, breaking());
+  if (model.sleep) resting_.emplace(model);
   if (!breaking_ || breaking_->broken_edge_count() == 0) return;
   const std::vector<int32_t> edges = breaking_->fracture().BrokenEdges();
   for (const auto& term : model.node_terms) term->StartBroken(edges);
@@ -79,12 +82,50 @@ void Stepper::Prepare(double start, State& state) {
     damage_told_ = breaking_->fracture().damage_count();
     for (const auto& term : model_.node_terms) term->SetDamage(breaking_->SolidFactors());
   }
+  if (resting_ && breaking_ && resting_told_ != breaking_->broken_edge_count()) {
+    resting_told_ = breaking_->broken_edge_count();
+    resting_->SetBroken(breaking_->fracture().edge_broken());
+  }
   if (!releases_) return;
+  const std::vector<uint8_t> held = state.released;
   releases_->Update(start, breaking(), state);
+  // What lets go in this step is felt wherever it held; it happens once.
+  if (resting_ && state.released != held) resting_->WakeAll();
   if (state.released != fixed_for_) {
     newton_.SetFixedNodes(FindFixedNodes(model_, state.released));
     fixed_for_ = state.released;
+    if (resting_) resting_->TellAgain();
   }
+}
+
+void Stepper::UpdateResting(double end, const State& state) {
+  influences_.clear();
+  for (const auto& term : model_.node_terms) term->AddInfluences(influences_);
+  AddMotionInfluences(model_, state.released, end, state.displacements, influences_);
+  if (breaking_) breaking_->AddStrandInfluences(influences_);
+  if (!resting_->Update(influences_)) return;
+  // A live tet is of one piece; strands are of pieces that sleep together.
+  std::vector<uint8_t> asleep;
+  if (std::count(resting_->asleep().begin(), resting_->asleep().end(), 1) > 0) {
+    for (const auto& tet : model_.mesh->tets) {
+      asleep.push_back(std::all_of(tet.begin(), tet.end(), [&](int32_t node) {
+        return resting_->asleep()[static_cast<size_t>(node)] != 0;
+      }));
+    }
+  }
+  left_out_energy_ = 0;
+  if (breaking_) {
+    for (const auto& term : model_.tet_terms) term->LeaveOut({}, state.displacements);
+    breaking_->LeaveOut({});
+    breaking_->FindStresses(state.displacements);
+  }
+  for (const auto& term : model_.tet_terms)
+    left_out_energy_ += term->LeaveOut(asleep, state.displacements);
+  if (breaking_) breaking_->LeaveOut(std::move(asleep));
+  std::vector<FixedNode> fixed_nodes = FindFixedNodes(model_, state.released);
+  resting_->AddFixedNodes(fixed_nodes);
+  newton_.SetFixedNodes(std::move(fixed_nodes));
+  newton_.SetRuns(resting_->AwakeRuns());
 }
 
 absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, State& state,
@@ -94,6 +135,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   Prepare(start, state);
   for (const auto& term : model_.node_terms) term->BeginStep(start, end, state);
   for (PlasticTerm* term : model_.plastic_terms) term->BeginStep(dt);
+  if (resting_) UpdateResting(end, state);
   // Free nodes go on as they moved; given ones are where they will be.
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
@@ -103,12 +145,14 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   // integration loses is the elastic energy beyond its tangent, the squared change of velocity and
   // what re-solves give away, each positive where energies are convex.
   const double motion_work = MotionWork(state);
-  double integration =
-      elastic_energy_ - newton_.elastic_energy() - newton_.ElasticWork(state, dt, displacements_);
+  double integration = elastic_energy_ - newton_.elastic_energy() - left_out_energy_ -
+                       newton_.ElasticWork(state, dt, displacements_);
   const KineticEnergies intact = MovingEnergies(dt, state);
   KineticEnergies moving = intact;
   double fracture_energy = 0;
-  if (breaking_) {
+  if (all_asleep()) {
+    // Stresses stay what they were.
+  } else if (breaking_) {
     CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, report));
     moving = MovingEnergies(dt, state);
   } else {
@@ -116,6 +160,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   }
   FlowWork flow;
   for (PlasticTerm* term : model_.plastic_terms) {
+    if (all_asleep()) break;
     const FlowWork of_term = term->KeepFlow();
     flow.work += of_term.work;
     flow.potential += of_term.potential;
@@ -123,7 +168,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   // What the potential has of viscosity is half of what that takes; the other half was counted as
   // lost to integration.
   integration += moving.change + intact.end - moving.end + flow.potential - flow.work;
-  elastic_energy_ = newton_.elastic_energy() - flow.potential;
+  elastic_energy_ = newton_.elastic_energy() + left_out_energy_ - flow.potential;
 
   report.fracture_energy += fracture_energy;
   report.plastic_work += flow.work;
@@ -132,7 +177,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     state.velocities[node] = (displacements_[node] - state.displacements[node]) / dt;
   state.displacements.swap(displacements_);
-  if (breaking_) {
+  if (breaking_ && !all_asleep()) {
     ScopedTimer timer(report.fracture_seconds);
     breaking_->EndStep(state.displacements);
   }
@@ -145,6 +190,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
     stored_energy += work.stored_energy;
     term->Renew(state);
   }
+  if (resting_) report.integration_dissipation += EndRest(dt, flow.work, state);
   report.contact_energy = stored_energy;
   report.shortest_step = report.steps == 0 ? dt : std::min(report.shortest_step, dt);
   ++report.steps;
@@ -161,6 +207,7 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     }
     for (const auto& term : model_.node_terms)
       term->EdgesBroke(breaking_->newly_broken(), displacements_);
+    if (resting_) resting_->EdgesBroke(breaking_->newly_broken());
     ++report.break_passes;
     const double before = newton_.elastic_energy();
     CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
@@ -205,8 +252,22 @@ double Stepper::GravityWork(const State& state) const {
   return Dot(sum, ToDouble4(*model_.gravity));
 }
 
+double Stepper::EndRest(double dt, double plastic_work, State& state) {
+  const bool flows = plastic_work > kFlowing * elastic_energy_;
+  return resting_->EndStep(dt, flows, newton_, state);
+}
+
+std::vector<Vec3> Stepper::MotionForces(const State& state) const {
+  if (!resting_ || model_.motions.empty())
+    return SumMotionForces(model_, state.released, newton_.outer_forces());
+  NodalVector forces = newton_.outer_forces();
+  resting_->PutHeldForces(forces);
+  return SumMotionForces(model_, state.released, forces);
+}
+
 int64_t Stepper::bytes() const {
-  return newton_.bytes() + static_cast<int64_t>(displacements_.size() * sizeof(Double4));
+  return newton_.bytes() + static_cast<int64_t>(displacements_.size() * sizeof(Double4)) +
+         (resting_ ? resting_->bytes() : 0);
 }
 
 namespace {
@@ -236,6 +297,7 @@ void Stepper::Save(ByteWriter& out) const {
   if (breaking_) SavePart(*breaking_, out);
   for (const auto& term : model_.tet_terms) SavePart(*term, out);
   for (const auto& term : model_.node_terms) SavePart(*term, out);
+  if (resting_) SavePart(*resting_, out);
 }
 
 absl::Status Stepper::Restore(ByteReader& in) {
@@ -247,6 +309,8 @@ absl::Status Stepper::Restore(ByteReader& in) {
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
   for (const auto& term : model_.node_terms)
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
+  if (resting_) CLEAVE_RETURN_IF_ERROR(RestorePart(*resting_, "sleep", in));
+  resting_told_ = -1;
   elastic_energy_ = elastic_energy;
   return absl::OkStatus();
 }

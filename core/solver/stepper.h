@@ -11,6 +11,7 @@
 #include "core/solver/breaking.h"
 #include "core/solver/newton.h"
 #include "core/solver/releases.h"
+#include "core/solver/resting.h"
 #include "core/solver/step_report.h"
 
 namespace cleave {
@@ -42,6 +43,10 @@ class Stepper {
   const NewtonSolver& solver() const { return newton_; }
   // J, of the last step that succeeded.
   double elastic_energy() const { return elastic_energy_; }
+  // N, that each motion exerts on the body at the end of the last step that succeeded.
+  std::vector<Vec3> MotionForces(const State& state) const;
+  // Null where nothing sleeps.
+  const Resting* resting() const { return resting_ ? &*resting_ : nullptr; }
   // Null where nothing breaks.
   Breaking* breaking() { return breaking_ ? &*breaking_ : nullptr; }
   const Breaking* breaking() const { return breaking_ ? &*breaking_ : nullptr; }
@@ -52,6 +57,12 @@ class Stepper {
   int32_t PartCount(double start, double end, const State& state) const;
   // Brings what follows damage and releases up to date before a step at `start` (s).
   void Prepare(double start, State& state);
+  // Wakes and lets sleep before a step to `end` (s), whose node terms have begun.
+  void UpdateResting(double end, const State& state);
+  // Lets fall asleep what has come to rest in a step; returns the kinetic energy that this takes,
+  // J.
+  double EndRest(double dt, double plastic_work, State& state);
+  bool all_asleep() const { return resting_ && resting_->all_asleep(); }
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
   // Alternates breaking and solving until no edge fails. Adds the elastic energy lost to
@@ -75,10 +86,14 @@ class Stepper {
   NewtonSolver newton_;
   std::optional<Breaking> breaking_;
   std::optional<Releases> releases_;  // where something may be released
-  std::vector<uint8_t> fixed_for_;    // State::released that the solver's fixed nodes are of
-  int64_t damage_told_ = -1;          // count of the damage that node terms know; -1: none
-  NodalVector displacements_;         // m, at the end of the step
-  double elastic_energy_ = 0;         // J, of the state
+  std::optional<Resting> resting_;    // where pieces may sleep
+  int64_t resting_told_ = -1;         // broken edges that its pieces are of; -1: none
+  std::vector<Influence> influences_;
+  double left_out_energy_ = 0;      // J, elastic, of what sleeps
+  std::vector<uint8_t> fixed_for_;  // State::released that the solver's fixed nodes are of
+  int64_t damage_told_ = -1;        // count of the damage that node terms know; -1: none
+  NodalVector displacements_;       // m, at the end of the step
+  double elastic_energy_ = 0;       // J, of the state
 };
 
 // J.

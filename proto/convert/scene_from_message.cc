@@ -538,6 +538,11 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
     if (message.contact().has_stiffness()) contact.stiffness = message.contact().stiffness();
     contact.friction = message.contact().friction();
   }
+  if (message.has_sleep()) {
+    Sleep& sleep = scene.sleep.emplace();
+    if (message.sleep().has_speed()) sleep.speed = message.sleep().speed();
+    if (message.sleep().has_time()) sleep.time = message.sleep().time();
+  }
   for (int i = 0; i < message.colliders_size(); ++i) {
     scene.colliders.push_back(
         convert.OneCollider(absl::StrCat("colliders[", i, "]"), message.colliders(i)));

@@ -364,6 +364,10 @@ v1::Scene MessageFromScene(const Scene& scene) {
     message.mutable_contact()->set_stiffness(scene.contact->stiffness);
     message.mutable_contact()->set_friction(scene.contact->friction);
   }
+  if (scene.sleep.has_value()) {
+    message.mutable_sleep()->set_speed(scene.sleep->speed);
+    message.mutable_sleep()->set_time(scene.sleep->time);
+  }
   for (const Collider& collider : scene.colliders) WriteCollider(collider, message.add_colliders());
   message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
                                                   ? v1::STRESS_AGGREGATION_MAX

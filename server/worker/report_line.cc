@@ -47,6 +47,7 @@ std::string ReportLine(const FrameReport& report) {
   add("broken_edges", absl::StrCat(report.broken_edges));
   add("new_broken_edges", absl::StrCat(report.new_broken_edges));
   add("fragments", absl::StrCat(report.fragments));
+  if (report.sleeping_pieces) add("sleeping_pieces", absl::StrCat(*report.sleeping_pieces));
   std::string forces;
   for (const Vec3& force : report.motion_forces) {
     absl::StrAppend(&forces, forces.empty() ? "" : ",", "[", Number(force[0]), ",",

@@ -1,7 +1,7 @@
 // Prints what a step costs and where the time goes: what fibres, impurities and precision cost
-// against the plain body, the column of the method's paper, and boxes of growing size that are
-// pulled until they break. `cleave_bench ratios`, `cleave_bench column` and `cleave_bench
-// [tets...]` print one of the tables.
+// against the plain body, the column of the method's paper, pieces asleep against awake, and boxes
+// of growing size that are pulled until they break. `cleave_bench ratios`, `cleave_bench column`,
+// `cleave_bench sleep` and `cleave_bench [tets...]` print one of the tables.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -171,11 +171,13 @@ absl::Status Run(const std::vector<std::string>& arguments) {
   const std::string table = arguments.empty() ? "" : arguments[0];
   if (table == "ratios") return PrintRatios();
   if (table == "column") return PrintColumn();
+  if (table == "sleep") return PrintSleep();
   std::vector<double> sizes;
   for (const std::string& size : arguments) sizes.push_back(std::atof(size.c_str()));
   if (!sizes.empty()) return PrintGrowth(sizes);
   CLEAVE_RETURN_IF_ERROR(PrintRatios());
   CLEAVE_RETURN_IF_ERROR(PrintColumn());
+  CLEAVE_RETURN_IF_ERROR(PrintSleep());
   return PrintGrowth({10e3, 40e3, 250e3});
 }
 

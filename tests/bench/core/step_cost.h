@@ -37,6 +37,8 @@ absl::StatusOr<std::vector<StepCost>> MeasureSteps(const TetMesh& mesh,
 
 // Prints a table of what steps cost as shares of the first case.
 absl::Status PrintRatios();
+// Prints steps of blocks that rest, asleep against awake.
+absl::Status PrintSleep();
 // Prints the step of 1/60 s of a column of 40 thousand tets, one Newton iteration, with its split.
 absl::Status PrintColumn();
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -88,6 +89,32 @@ TEST(CrackSurface, SmoothingLeavesThePlaneThatAStaircaseFollows) {
   const auto flat = CrackSurface(
       mesh, incidence, CutBetween(mesh, incidence, [](const Vec3& x) { return x[0] < 1.5; }));
   EXPECT_NEAR(FibreCrossing(SmoothedCrack(flat, 3), {0.6, 0.8, 0}), 0.6, 1e-9);
+}
+
+TEST(CrackSurface, PartsAreWhatStepsOfTheReachJoin) {
+  const TetMesh mesh = KuhnBox({12, 3, 3}, {12, 3, 3});
+  const Incidence incidence = BuildIncidence(mesh);
+  // Three planes, the first two of them two cells apart.
+  const auto crack = CrackSurface(mesh, incidence, CutBetween(mesh, incidence, [](const Vec3& x) {
+                                    return x[0] < 1.5 || (x[0] > 3.5 && x[0] < 9.5);
+                                  }));
+  ASSERT_NEAR(CrackArea(crack), 27, 1e-9);
+  const auto parts = CrackParts(crack, 1);
+  ASSERT_EQ(parts.size(), 3);
+  size_t facets = 0;
+  for (const auto& part : parts) {
+    EXPECT_NEAR(CrackArea(part), 9, 1e-9);
+    EXPECT_NEAR(ExtentAlong(part, {1, 0, 0}, 0).length(), 0, 1e-9);
+    facets += part.size();
+  }
+  EXPECT_EQ(facets, crack.size());
+  EXPECT_EQ(parts[0].front().center, crack.front().center);
+  // A longer reach joins the two that are near.
+  const auto joined = CrackParts(crack, 3);
+  ASSERT_EQ(joined.size(), 2);
+  EXPECT_NEAR(std::max(CrackArea(joined[0]), CrackArea(joined[1])), 18, 1e-9);
+  EXPECT_EQ(CrackParts(crack, 20).size(), 1);
+  EXPECT_TRUE(CrackParts({}, 1).empty());
 }
 
 TEST(CrackSurface, ATraceIsTheLineAlongManyFacets) {

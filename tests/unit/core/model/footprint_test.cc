@@ -82,6 +82,9 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.contact.emplace();
   expect_adds(scene, "contact");
   scene = minimal;
+  scene.sleep.emplace();
+  expect_adds(scene, "sleep");
+  scene = minimal;
   scene.materials[0].tensile_strength = 1e5;
   expect_adds(scene, "fracture");
   scene = minimal;

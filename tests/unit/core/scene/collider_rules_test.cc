@@ -126,6 +126,16 @@ TEST(ContactRules, NameEachFieldThatIsOutOfRange) {
   EXPECT_THAT(faults.ToStatus().message(), HasSubstr("contact.friction: -1 is outside [0, 10]"));
 }
 
+TEST(SleepRules, NameEachFieldThatIsOutOfRange) {
+  Scene scene;
+  scene.sleep.emplace();
+  EXPECT_TRUE(ValidateScene(scene).ToStatus().message().find("sleep") == std::string::npos);
+  scene.sleep = Sleep{0, INFINITY};
+  const auto message = std::string(ValidateScene(scene).ToStatus().message());
+  EXPECT_THAT(message, HasSubstr("sleep.speed: 0 is outside (0, 1]"));
+  EXPECT_THAT(message, HasSubstr("sleep.time: inf is outside (0, 3600]"));
+}
+
 TEST(ColliderRules, TwoCollidersOfOneNameAreRefused) {
   Scene scene = WithCollider(PlaneShape{});
   scene.colliders[0].name = "floor";

@@ -148,6 +148,7 @@ constexpr char kEveryField[] = R"pb(
   output { tolerance: 1e-5 keyframe_interval: 5 checkpoint_interval: 4 }
   seed: 77
   contact { stiffness: 3 friction: 0.6 }
+  sleep { speed: 0.002 time: 0.5 }
   colliders {
     name: "floor"
     plane {
