@@ -10,6 +10,7 @@
 #include "tests/scenes/locality.h"
 #include "tests/scenes/meat_loaf.h"
 #include "tests/scenes/slab_trio.h"
+#include "tests/scenes/steak.h"
 
 namespace cleave {
 
@@ -33,6 +34,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakeBranch,
        MeasureBranch},
       {"locality", "Fig. 5, sec. 5", {"without", "with"}, MakeLocality, MeasureLocality},
+      {"steak", "Figs. 1 and 13", {"meat", "iso", "turned"}, MakeSteak, MeasureSteak},
       {"meat_loaf", "Fig. 2", {"loaf", "meat"}, MakeMeatLoaf, MeasureMeatLoaf},
       {"column", "sec. 7.7.2", {"sheet", "plain"}, MakeColumn, MeasureColumn},
   };

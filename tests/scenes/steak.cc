@@ -1,0 +1,139 @@
+#include "tests/scenes/steak.h"
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "core/base/status.h"
+#include "tests/metrics/pieces.h"
+#include "tests/scenes/scene_parts.h"
+#include "tests/scenes/shapes.h"
+
+namespace cleave {
+namespace {
+
+constexpr Vec3 kSize{0.2, 0.12, 0.02};  // m
+constexpr double kGrip = 0.02;          // m at each end
+constexpr double kPull = 0.3;           // m
+constexpr double kSeconds = 1.5;
+constexpr int32_t kFat = 1;  // region
+
+// The line that a fibre follows: a wave along x.
+double Wave(double x) { return 0.006 * std::sin(2 * std::numbers::pi * x / 0.11); }
+Vec3 FibreAt(const Vec3& x) {
+  const double wave_number = 2 * std::numbers::pi / 0.11;
+  const double slope = 0.006 * wave_number * std::cos(wave_number * x[0]);
+  const double length = std::hypot(1, slope);
+  return {1 / length, slope / length, 0};
+}
+
+// Streaks of fat lie between fibres.
+bool InFat(const Vec3& x) {
+  struct Streak {
+    double middle, y, half_length, half_width;  // m
+  };
+  constexpr Streak kStreaks[] = {{-0.03, 0.022, 0.045, 0.0035},
+                                 {0.035, -0.004, 0.04, 0.0035},
+                                 {-0.02, -0.03, 0.035, 0.0035},
+                                 {0.045, 0.036, 0.025, 0.003}};
+  for (const Streak& streak : kStreaks) {
+    const double along = (x[0] - streak.middle) / streak.half_length;
+    const double across = (x[1] - Wave(x[0]) - streak.y) / streak.half_width;
+    if (along * along + across * across <= 1) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+absl::StatusOr<Demonstration> MakeSteak(const Setting& setting) {
+  Demonstration made;
+  made.cell_size = 0.0063 * setting.coarseness;
+  CLEAVE_ASSIGN_OR_RETURN(
+      made.mesh, SuperellipseSlab(kSize, 4, {setting.layout, made.cell_size, 0.2, setting.seed}));
+  made.mesh.regions.push_back({0, "meat"});
+  NameRegion(made.mesh, kFat, "fat", InFat);
+  for (size_t tet = 0; tet < made.mesh.tets.size(); ++tet)
+    made.fibres.push_back(FibreAt(Centroid(made.mesh, tet)));
+  made.rest_length = kSize[0] - 2 * kGrip;
+
+  Scene& scene = made.scene;
+  scene.name = "steak";
+  scene.seed = setting.seed;
+  Material meat;
+  meat.name = "meat";
+  meat.youngs_modulus = 1e5;
+  meat.poisson_ratio = 0.4;
+  meat.density = 1050;
+  meat.tensile_strength = 2.2e4;
+  if (setting.variant != "iso") {
+    FibreFamily family;
+    family.stiffness = 3e5;
+    TetDirections directions;
+    for (const Vec3& fibre : made.fibres) {
+      directions.vectors.push_back(setting.variant == "turned" ? Vec3{-fibre[1], fibre[0], 0}
+                                                               : fibre);
+    }
+    family.direction = directions;
+    family.strength_ratio = 3;
+    meat.fibres.push_back(family);
+  }
+  meat.strands = Strands{0.4, 2.2};
+  scene.materials.push_back(meat);
+  Material fat;
+  fat.name = "fat";
+  fat.regions = {"fat"};
+  fat.youngs_modulus = 2e4;
+  fat.poisson_ratio = 0.4;
+  fat.density = 920;
+  fat.tensile_strength = 8e3;
+  scene.materials.push_back(fat);
+  Impurities flaws;
+  flaws.noise = 0.1;
+  scene.impurities = flaws;
+
+  made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < -kSize[0] / 2 + kGrip; });
+  made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kSize[0] / 2 - kGrip; });
+  AddNodeSet(scene, "pinned", made.grip);
+  AddNodeSet(scene, "pulled", made.pulled);
+  AddMotion(scene, "pinned");
+  made.pull_direction = InPlane(30);
+  const Vec3& way = made.pull_direction;
+  made.pull_motion = AddMotion(scene, "pulled", {true, true, true},
+                               PullBy({kPull * way[0], kPull * way[1], 0}, kSeconds));
+  // Stronger next to the grips, so that these do not start the cracks.
+  for (const double sign : {-1.0, 1.0}) {
+    const double middle = sign * (kSize[0] / 2 - 0.6 * kGrip);
+    scene.weakenings.push_back({BoxSelector{{middle - kGrip, -1, -1}, {middle + kGrip, 1, 1}}, 2});
+  }
+  SetPace(scene, kSeconds, 90);
+  return made;
+}
+
+Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
+                     const Run& run) {
+  Metrics metrics;
+  const TetMesh& mesh = demonstration.mesh;
+  metrics["smallest_hold"] = SmallestHold(mesh, incidence, run.frames);
+  double bridging = 0;
+  const int64_t half = CrackOpenTo(run.frames, 0.5);
+  if (half >= 0) {
+    const Frame& frame = run.frames[static_cast<size_t>(half)];
+    for (const int32_t edge : BridgingEdges(incidence, frame, run.frames.back())) {
+      if (EdgeStretch(mesh, incidence, frame, edge) < 1.3) continue;
+      const auto& [a, b] = incidence.edges[static_cast<size_t>(edge)];
+      const Vec3& p = mesh.rest_positions[static_cast<size_t>(a)];
+      const Vec3& q = mesh.rest_positions[static_cast<size_t>(b)];
+      const Vec3 fibre = FibreAt({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
+      const double length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+      const double along =
+          ((p[0] - q[0]) * fibre[0] + (p[1] - q[1]) * fibre[1] + (p[2] - q[2]) * fibre[2]) / length;
+      bridging += std::abs(along) >= 0.8 ? 1 : 0;
+    }
+  }
+  metrics["half_open"] = static_cast<double>(half);
+  metrics["bridging"] = bridging;
+  return metrics;
+}
+
+}  // namespace cleave

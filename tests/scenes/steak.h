@@ -1,0 +1,20 @@
+#ifndef CLEAVE_TESTS_SCENES_STEAK_H_
+#define CLEAVE_TESTS_SCENES_STEAK_H_
+
+#include "tests/scenes/demonstration.h"
+
+namespace cleave {
+
+// A steak torn apart: a superellipse slab of 0.20 x 0.12 x 0.02 m, wavy fibres along x, streaks of
+// weak isotropic fat; one side pinned, the other pulled 30 degrees off x. Variants: "meat"; "iso",
+// without fibres; "turned", fibres along y.
+absl::StatusOr<Demonstration> MakeSteak(const Setting& setting);
+
+// bridging: strands across the tear when half of it is open: edges stretched 1.3 times and more,
+// within |cos| 0.8 of the fibres. smallest_hold: the least of its boundary by which a piece dangled.
+Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
+                     const Run& run);
+
+}  // namespace cleave
+
+#endif  // CLEAVE_TESTS_SCENES_STEAK_H_
