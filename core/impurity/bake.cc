@@ -71,7 +71,7 @@ Shares BladeShares(const BladeSet& set, const ImpurityLayer& layer, const TetMes
     for (size_t node = 0; node < outside.size(); ++node)
       shares.nodes[node] = ShareAt(outside[node], layer);
   }
-  const std::vector<uint8_t> crossed = blades.CrossedEdges(edges, nullptr);
+  const std::vector<uint8_t> crossed = blades.CrossedEdges(edges);
   shares.edges.assign(edges.size(), 0);
   for (size_t edge = 0; edge < edges.size(); ++edge) {
     const auto a = static_cast<size_t>(edges[edge][0]), b = static_cast<size_t>(edges[edge][1]);

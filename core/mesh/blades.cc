@@ -33,9 +33,7 @@ Blades::Blades(BladeSet set, const TetMesh& mesh)
   if (std::isfinite(set_.depth)) depth_.emplace(mesh, set_.direction);
 }
 
-std::vector<uint8_t> Blades::CrossedEdges(std::span<const std::array<int32_t, 2>> edges,
-                                          std::vector<uint8_t>* hits) const {
-  if (hits != nullptr) hits->assign(set_.segments.size(), 0);
+PlaneGrid Blades::SegmentGrid() const {
   std::vector<PlaneBox> boxes;
   boxes.reserve(set_.segments.size());
   for (const BladeSegment& segment : set_.segments) {
@@ -47,9 +45,17 @@ std::vector<uint8_t> Blades::CrossedEdges(std::span<const std::array<int32_t, 2>
       largest = std::max(largest, std::abs(x));
     boxes.back().Grow(margin_ + 64 * std::numeric_limits<double>::epsilon() * largest);
   }
-  const PlaneGrid grid(boxes);
+  return PlaneGrid(boxes);
+}
+
+bool Blades::Crosses(const BladeSegment& blade, const Vec3& a, const Vec3& b) const {
+  return CrossesCurtain(set_.direction, blade.start, blade.end, a, b) &&
+         (!depth_ || depth_->At(CrossingPoint(set_.direction, blade, a, b)) <= set_.depth);
+}
+
+std::vector<uint8_t> Blades::CrossedEdges(std::span<const std::array<int32_t, 2>> edges) const {
+  const PlaneGrid grid = SegmentGrid();
   std::vector<uint8_t> crossed(edges.size(), 0);
-  std::vector<std::vector<int32_t>> hit_by(hits != nullptr ? edges.size() : 0);
   ParallelFor(static_cast<int64_t>(edges.size()), kGrain, [&](int64_t begin, int64_t end) {
     for (int64_t e = begin; e < end; ++e) {
       const auto edge = static_cast<size_t>(e);
@@ -58,19 +64,33 @@ std::vector<uint8_t> Blades::CrossedEdges(std::span<const std::array<int32_t, 2>
       PlaneBox box = BoxOf(view_.Across(a), view_.Across(b));
       box.Grow(margin_);
       grid.Near(box, [&](int32_t id) {
-        if (crossed[edge] != 0 && hits == nullptr) return;
-        const BladeSegment& blade = set_.segments[static_cast<size_t>(id)];
-        if (!CrossesCurtain(set_.direction, blade.start, blade.end, a, b)) return;
-        if (depth_ && depth_->At(CrossingPoint(set_.direction, blade, a, b)) > set_.depth) return;
-        crossed[edge] = 1;
-        if (hits != nullptr) hit_by[edge].push_back(id);
+        if (crossed[edge] == 0)
+          crossed[edge] = Crosses(set_.segments[static_cast<size_t>(id)], a, b);
       });
     }
   });
-  for (const std::vector<int32_t>& ids : hit_by) {
-    for (const int32_t id : ids) (*hits)[static_cast<size_t>(id)] = 1;
-  }
   return crossed;
+}
+
+std::vector<uint8_t> Blades::CrossingCurves(std::span<const std::array<int32_t, 2>> edges,
+                                            std::span<const int32_t> curve_of,
+                                            size_t curves) const {
+  const PlaneGrid grid = SegmentGrid();
+  std::vector<uint8_t> crosses(curves, 0);
+  size_t left = curves;
+  for (size_t edge = 0; edge < edges.size() && left > 0; ++edge) {
+    const Vec3& a = mesh_.rest_positions[static_cast<size_t>(edges[edge][0])];
+    const Vec3& b = mesh_.rest_positions[static_cast<size_t>(edges[edge][1])];
+    PlaneBox box = BoxOf(view_.Across(a), view_.Across(b));
+    box.Grow(margin_);
+    grid.Near(box, [&](int32_t id) {
+      const auto curve = static_cast<size_t>(curve_of[static_cast<size_t>(id)]);
+      if (crosses[curve] != 0 || !Crosses(set_.segments[static_cast<size_t>(id)], a, b)) return;
+      crosses[curve] = 1;
+      --left;
+    });
+  }
+  return crosses;
 }
 
 std::vector<double> Blades::DistancesOutside(double reach) const {

@@ -38,10 +38,13 @@ class Blades {
   Blades(BladeSet set, const TetMesh& mesh);
 
   // Whether each of the edges (node ids) crosses a blade, exactly (CrossesCurtain) but for depth,
-  // which is that of the point where it crosses, to rounding. Tells in `hits`, unless it is null,
-  // whether each segment crosses any.
-  std::vector<uint8_t> CrossedEdges(std::span<const std::array<int32_t, 2>> edges,
-                                    std::vector<uint8_t>* hits) const;
+  // which is that of the point where it crosses, to rounding.
+  std::vector<uint8_t> CrossedEdges(std::span<const std::array<int32_t, 2>> edges) const;
+
+  // Whether each of `curves` curves crosses any of the edges; `curve_of` names the curve of every
+  // segment. Looks no farther once all do.
+  std::vector<uint8_t> CrossingCurves(std::span<const std::array<int32_t, 2>> edges,
+                                      std::span<const int32_t> curve_of, size_t curves) const;
 
   // How far every node is outside the grooves, m: across the direction, from the radius of the
   // closest point of a segment's line on; along it, below the depth. 0 inside; infinite from
@@ -49,6 +52,9 @@ class Blades {
   std::vector<double> DistancesOutside(double reach) const;
 
  private:
+  PlaneGrid SegmentGrid() const;
+  bool Crosses(const BladeSegment& blade, const Vec3& a, const Vec3& b) const;
+
   const BladeSet set_;
   const TetMesh& mesh_;
   const PlaneView view_;

@@ -211,19 +211,15 @@ void CheckHits(const std::string& field, const ImpurityLayer& layer, const TetMe
   const bool stroke = std::holds_alternative<Strokes>(layer.source);
   CurveBlades cut = stroke ? BladesOf(std::get<Strokes>(layer.source))
                            : BladesOf(std::get<SegmentPattern>(layer.source));
-  const std::vector<int32_t> curve_of = std::move(cut.curve_of);
-  std::vector<uint8_t> hits;
-  Blades(std::move(cut.blades), mesh).CrossedEdges(edges, &hits);
-  if (!stroke) {
-    if (std::none_of(hits.begin(), hits.end(), [](uint8_t hit) { return hit != 0; }))
-      faults.Error(field + ".pattern", kMisses);
-    return;
+  // All of a pattern counts as one curve.
+  if (!stroke) std::fill(cut.curve_of.begin(), cut.curve_of.end(), 0);
+  const size_t curves = stroke ? std::get<Strokes>(layer.source).curves.size() : 1;
+  const std::vector<uint8_t> crosses =
+      Blades(std::move(cut.blades), mesh).CrossingCurves(edges, cut.curve_of, curves);
+  for (size_t c = 0; c < curves; ++c) {
+    if (crosses[c] == 0)
+      faults.Error(stroke ? At(field + ".strokes.curves", c) : field + ".pattern", kMisses);
   }
-  std::vector<uint8_t> hit(std::get<Strokes>(layer.source).curves.size(), 0);
-  for (size_t k = 0; k < hits.size(); ++k)
-    if (hits[k] != 0) hit[static_cast<size_t>(curve_of[k])] = 1;
-  for (size_t c = 0; c < hit.size(); ++c)
-    if (hit[c] == 0) faults.Error(At(field + ".strokes.curves", c), kMisses);
 }
 
 // A painted surface whose reach ends before the body begins.

@@ -97,8 +97,12 @@ TEST(Blades, CrossExactlyTheEdgesThatABruteForceTestOfWholeNumbersFinds) {
         for (double& x : segment.end) x = 16 * std::round(x / 16);
       }
     }
-    std::vector<uint8_t> hits;
-    const std::vector<uint8_t> crossed = Blades(set, mesh).CrossedEdges(incidence.edges, &hits);
+    const Blades blades(set, mesh);
+    const std::vector<uint8_t> crossed = blades.CrossedEdges(incidence.edges);
+    std::vector<int32_t> curve_of(set.segments.size());
+    std::iota(curve_of.begin(), curve_of.end(), 0);
+    const std::vector<uint8_t> hits =
+        blades.CrossingCurves(incidence.edges, curve_of, curve_of.size());
     std::vector<uint8_t> expected_hits(set.segments.size(), 0);
     for (size_t e = 0; e < incidence.edges.size(); ++e) {
       const auto [a, b] = incidence.edges[e];
@@ -131,7 +135,7 @@ TEST(Blades, EndAtTheirDepth) {
     set.segments = {{{-19, -40, 1000}, {13, 50, -3}}, {{-40, 3, 0}, {40, 6, 0}}};
     set.direction = {0, 0, -3};
     set.depth = depth;
-    const std::vector<uint8_t> crossed = Blades(set, mesh).CrossedEdges(incidence.edges, nullptr);
+    const std::vector<uint8_t> crossed = Blades(set, mesh).CrossedEdges(incidence.edges);
     int count = 0;
     for (size_t e = 0; e < incidence.edges.size(); ++e) {
       const auto [a, b] = incidence.edges[e];
@@ -187,7 +191,7 @@ TEST(Blades, MarkTheSameEdgesWhenTheyMoveAndTurnWithTheBody) {
     set.depth = 21.3;
     for (int k = 0; k < 8; ++k) set.segments.push_back({draws.Point(32), draws.Point(32), {2, 3}});
     const Blades blades(set, mesh);
-    const auto crossed = blades.CrossedEdges(incidence.edges, nullptr);
+    const auto crossed = blades.CrossedEdges(incidence.edges);
     const auto outside = blades.DistancesOutside(6);
     EXPECT_GT(std::count(crossed.begin(), crossed.end(), 1), 20);
     for (const ExactMotion& motion : kMotions) {
@@ -200,7 +204,7 @@ TEST(Blades, MarkTheSameEdgesWhenTheyMoveAndTurnWithTheBody) {
         segment.end = motion.Move(segment.end);
       }
       const Blades other(with_it, moved);
-      EXPECT_EQ(other.CrossedEdges(incidence.edges, nullptr), crossed) << seed;
+      EXPECT_EQ(other.CrossedEdges(incidence.edges), crossed) << seed;
       const auto distances = other.DistancesOutside(6);
       for (size_t node = 0; node < outside.size(); ++node) {
         if (std::isinf(outside[node])) {
@@ -218,7 +222,7 @@ TEST(Blades, ThroughNodesCutOneLayerOfEdges) {
   const Incidence incidence = BuildIncidence(mesh);
   BladeSet set;
   set.segments = {{{2, -1, 0}, {2, 9, 0}}};
-  const auto crossed = Blades(set, mesh).CrossedEdges(incidence.edges, nullptr);
+  const auto crossed = Blades(set, mesh).CrossedEdges(incidence.edges);
   for (size_t e = 0; e < incidence.edges.size(); ++e) {
     const double x = mesh.rest_positions[static_cast<size_t>(incidence.edges[e][0])][0];
     const double y = mesh.rest_positions[static_cast<size_t>(incidence.edges[e][1])][0];
