@@ -38,7 +38,7 @@ ARROWS = {
     "core/surface": ["core/surface", "core/damage", "core/mesh", "Eigen"],
     "core/stream": ["core/stream", "core/mesh", "zstd.h", "immintrin.h"],
     "proto/convert": ["proto/convert", "cleave", "google", "core/scene", "core/mesh", "core/stream",
-                      "core/probe/probe.h"],
+                      "core/probe/probe.h", "core/model/impurity_preview.h"],
     "server/files": ["server/files", POSIX],
     "server/control": ["server/control", "server/files", "google", POSIX],
     "server/session": ["server/session", "server/files", "proto/convert", "cleave", "google", "core/scene",
@@ -53,15 +53,15 @@ ARROWS = {
                        "zstd.h", POSIX],
     "server/gateway/rpc": ["server/gateway", "server/session", "server/files", "proto/convert", "cleave", "google",
                            "grpc", "grpcpp", "core/scene", "core/mesh", "core/stream",
-                           "core/model/footprint.h", "spdlog", POSIX],
+                           "core/model/footprint.h", "core/model/impurity_preview.h", "spdlog", POSIX],
     "client/cpp": ["client/cpp", "proto/convert", "cleave", "google", "grpc", "grpcpp", "core/scene",
                    "core/mesh", "core/stream", "zstd.h", POSIX],
     "client/io": ["client/io", "proto/convert", "cleave", "google", "core/scene", "core/mesh",
-                  "core/surface", "core/damage", "core/stream", "Eigen", "zlib.h", "zstd.h", "png.h",
-                  "webp", "assimp", "embree3", "pugixml.hpp", "tbb", POSIX],
+                  "core/surface", "core/damage", "core/impurity", "core/stream", "Eigen", "zlib.h",
+                  "zstd.h", "png.h", "jpeglib.h", "webp", "assimp", "embree3", "pugixml.hpp", "tbb", POSIX],
     "client/cli": ["client/cli", "client/cpp", "client/io", "proto/convert", "cleave", "google",
                    "core/scene", "core/mesh", "core/surface", "core/stream", "core/probe", "CLI",
-                   POSIX],
+                   "core/model/impurity_preview.h", POSIX],
 }
 EVERYWHERE = ["core/base", "absl"]
 

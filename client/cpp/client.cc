@@ -58,6 +58,7 @@ Client::Client(std::string address, std::shared_ptr<grpc::Channel> channel, cons
       stop_(stop),
       assets_(v1::AssetService::NewStub(channel_)),
       frames_(v1::FrameService::NewStub(channel_)),
+      impurities_(v1::ImpurityService::NewStub(channel_)),
       materials_(v1::MaterialService::NewStub(channel_)),
       servers_(v1::ServerService::NewStub(channel_)),
       sessions_(v1::SessionService::NewStub(channel_)) {}
@@ -219,6 +220,16 @@ absl::StatusOr<v1::ListMaterialPresetsResponse> Client::ListMaterialPresets() {
   CLEAVE_RETURN_IF_ERROR(
       CallWithRetry(policy_, "listing presets", stop_, [&](grpc::ClientContext& context) {
         return materials_->ListMaterialPresets(&context, {}, &response);
+      }));
+  return response;
+}
+
+absl::StatusOr<v1::PreviewImpurityResponse> Client::PreviewImpurity(
+    const v1::PreviewImpurityRequest& request) {
+  v1::PreviewImpurityResponse response;
+  CLEAVE_RETURN_IF_ERROR(
+      CallWithRetry(policy_, "previewing impurities", stop_, [&](grpc::ClientContext& context) {
+        return impurities_->PreviewImpurity(&context, request, &response);
       }));
   return response;
 }

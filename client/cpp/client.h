@@ -14,6 +14,7 @@
 #include "absl/strings/string_view.h"
 #include "cleave/v1/asset.grpc.pb.h"
 #include "cleave/v1/frame.grpc.pb.h"
+#include "cleave/v1/impurity.grpc.pb.h"
 #include "cleave/v1/material.grpc.pb.h"
 #include "cleave/v1/server.grpc.pb.h"
 #include "cleave/v1/session.grpc.pb.h"
@@ -51,6 +52,8 @@ class Client {
 
   absl::StatusOr<v1::ProbeMaterialResponse> ProbeMaterial(const v1::ProbeMaterialRequest& request);
   absl::StatusOr<v1::ListMaterialPresetsResponse> ListMaterialPresets();
+  absl::StatusOr<v1::PreviewImpurityResponse> PreviewImpurity(
+      const v1::PreviewImpurityRequest& request);
 
   // For the calls that stream: mesh_transfer.h, frame_stream.h.
   v1::AssetService::Stub& assets() { return *assets_; }
@@ -69,6 +72,7 @@ class Client {
   v1::ServerInfo server_;
   std::unique_ptr<v1::AssetService::Stub> assets_;
   std::unique_ptr<v1::FrameService::Stub> frames_;
+  std::unique_ptr<v1::ImpurityService::Stub> impurities_;
   std::unique_ptr<v1::MaterialService::Stub> materials_;
   std::unique_ptr<v1::ServerService::Stub> servers_;
   std::unique_ptr<v1::SessionService::Stub> sessions_;

@@ -96,15 +96,15 @@ v1::Plan PlanOf(const Scene& scene, const TetMesh& mesh) {
   return plan;
 }
 
-}  // namespace
-
-absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults& request_faults,
-                                          AssetStore& assets, bool store_mesh) {
+// CheckSceneAndMesh. Also gives `message` the numbers of its presets and, when `store_mesh`, the
+// asset of a procedural mesh.
+absl::StatusOr<CheckedScene> Check(v1::Scene& message, const Faults& request_faults,
+                                   AssetStore& assets, bool store_mesh) {
   Faults faults;
-  AcceptedScene accepted;
-  accepted.scene = message;
-  ResolvePresets(accepted.scene, faults);  // a session keeps the numbers, whatever presets become
-  const Scene scene = SceneFromMessage(accepted.scene, faults);
+  ResolvePresets(message, faults);  // a session keeps the numbers, whatever presets become
+  CheckedScene checked;
+  checked.scene = SceneFromMessage(message, faults);
+  const Scene& scene = checked.scene;
   faults.Append("", ValidateScene(scene));
   std::optional<TetMesh> mesh;
   if (MeshIsSound(faults)) {
@@ -115,7 +115,7 @@ absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults
     if (store_mesh && faults.ok() && request_faults.ok() &&
         !std::holds_alternative<MeshAsset>(scene.mesh.source)) {
       CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(*mesh));
-      CLEAVE_ASSIGN_OR_RETURN(*accepted.scene.mutable_mesh()->mutable_asset(), assets.Add(bytes));
+      CLEAVE_ASSIGN_OR_RETURN(*message.mutable_mesh()->mutable_asset(), assets.Add(bytes));
     }
     ScaleMesh(scene.mesh.unit_scale, *mesh);
     const Faults mesh_faults = CheckAndOrientMesh(*mesh);
@@ -125,10 +125,28 @@ absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults
   Faults all = request_faults;
   all.Append("scene.", faults);
   if (!all.ok()) return MakeBadRequest("PARAM_OUT_OF_RANGE", "", all);
-  for (const Fault& warning : faults.warnings()) {
-    accepted.warnings.push_back(absl::StrCat(warning.field, ": ", warning.description));
-  }
-  accepted.plan = PlanOf(scene, *mesh);
+  for (const Fault& warning : faults.warnings())
+    checked.warnings.push_back(absl::StrCat(warning.field, ": ", warning.description));
+  checked.mesh = *std::move(mesh);
+  return checked;
+}
+
+}  // namespace
+
+absl::StatusOr<CheckedScene> CheckSceneAndMesh(const v1::Scene& message,
+                                               const Faults& request_faults, AssetStore& assets) {
+  v1::Scene resolved = message;
+  return Check(resolved, request_faults, assets, false);
+}
+
+absl::StatusOr<AcceptedScene> AcceptScene(const v1::Scene& message, const Faults& request_faults,
+                                          AssetStore& assets, bool store_mesh) {
+  AcceptedScene accepted;
+  accepted.scene = message;
+  CLEAVE_ASSIGN_OR_RETURN(CheckedScene checked,
+                          Check(accepted.scene, request_faults, assets, store_mesh));
+  accepted.warnings = std::move(checked.warnings);
+  accepted.plan = PlanOf(checked.scene, checked.mesh);
   return accepted;
 }
 

@@ -103,6 +103,54 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual([field for field, _ in caught.exception.faults],
                          ["material.youngs_modulus", "material.density", "samples"])
 
+    def test_impurities_are_previewed_as_arrays(self):
+        def layer(**source):
+            return scene_pb2.ImpurityLayer(potency=4, weakening=0.5, **source)
+
+        line = scene_pb2.Polyline(points=[0.31, -9, 0, 0.31, 9, 0])
+        scene = scene_pb2.Scene(
+            mesh=scene_pb2.MeshSource(box=scene_pb2.BoxMesh(
+                size=[1, 0.5, 0.25],
+                resolution=scene_pb2.MeshResolution(
+                    layout=scene_pb2.MESH_LAYOUT_JITTERED_LATTICE, cell_size=0.125))),
+            materials=[scene_pb2.Material(youngs_modulus=1e6, density=1000, tensile_strength=2000)],
+            impurities=scene_pb2.Impurities(
+                layers=[layer(strokes=scene_pb2.Strokes(curves=[line]))]),
+        )
+        preview = self.client.preview_impurity(scene, with_edges=True)
+        self.assertEqual(preview.potencies.shape, (9 * 5 * 3,))
+        self.assertEqual(set(preview.potencies), {0, 4})
+        self.assertEqual(preview.edges.shape, (preview.affected_edges, 2))
+        self.assertLess(preview.affected_edges, preview.edge_count)
+        cut = preview.weakenings == 0.5
+        self.assertGreater(cut.sum(), 15)
+        # Crossed edges have impure ends, and lie across the stroke.
+        self.assertTrue((preview.potencies[preview.edges[cut]] == 4).all())
+        self.assertEqual(preview.strengths.min(), preview.weakest)
+        self.assertLess(preview.weakest, 1000)
+        self.assertAlmostEqual(preview.strongest, 2000)
+        self.assertEqual(self.client.preview_impurity(scene).edges.size, 0)
+        # Shares of nodes from an array.
+        shares = np.linspace(0, 1, len(preview.potencies))
+        scene.impurities.layers[0].CopyFrom(
+            layer(node_values=scene_pb2.NodeValues(shares=shares)))
+        np.testing.assert_allclose(self.client.preview_impurity(scene).potencies, 4 * shares)
+
+        scene.impurities.layers[0].CopyFrom(
+            layer(pattern=scene_pb2.SegmentPattern(image=scene_pb2.ImageDrawing(file="star.png"))))
+        scene.impurities.layers.append(layer(strokes=scene_pb2.Strokes(
+            curves=[scene_pb2.Polyline(points=[5, 0, 0, 6, 0, 0])])))
+        scene.impurities.layers.append(layer(node_values=scene_pb2.NodeValues(shares=[1, 0])))
+        with self.assertRaises(CleaveError) as caught:
+            self.client.preview_impurity(scene)
+        self.assertEqual([field for field, _ in caught.exception.faults],
+                         ["scene.impurities.layers[0].pattern.image.file",
+                          "scene.impurities.layers[1].strokes.curves[0]",
+                          "scene.impurities.layers[2].node_values.shares"])
+        with self.assertRaises(CleaveError) as caught:
+            self.client.preview_impurity(first_steps.bar())
+        self.assertEqual(caught.exception.faults[0][0], "scene.impurities")
+
     def test_session_keeps_the_numbers_of_a_preset(self):
         scene = first_steps.bar()
         scene.materials[0].Clear()

@@ -29,6 +29,8 @@ try:
         asset_pb2_grpc,
         frame_pb2,
         frame_pb2_grpc,
+        impurity_pb2,
+        impurity_pb2_grpc,
         material_pb2,
         material_pb2_grpc,
         scene_pb2,
@@ -114,6 +116,21 @@ class Probe:
 
 
 @dataclasses.dataclass(frozen=True)
+class ImpurityPreview:
+    """What impurities do to a body before the first step of a simulation."""
+
+    potencies: np.ndarray  # nodes, alpha
+    edge_count: int  # of the mesh
+    affected_edges: int  # whose strength impurities change
+    weakest: float  # Pa, tensile strength of the weakest edge; 0: cut
+    strongest: float  # Pa, inf: never breaks
+    edges: np.ndarray  # affected x 2 node ids; this and the next two only with_edges
+    weakenings: np.ndarray  # affected, what layers make their strength count
+    strengths: np.ndarray  # affected, Pa
+    warnings: list  # "field: what"
+
+
+@dataclasses.dataclass(frozen=True)
 class Mesh:
     """A tetrahedral mesh; node and tet ids are rows."""
 
@@ -149,6 +166,7 @@ class Client:
         )
         self._assets = asset_pb2_grpc.AssetServiceStub(self._channel)
         self._frames = frame_pb2_grpc.FrameServiceStub(self._channel)
+        self._impurities = impurity_pb2_grpc.ImpurityServiceStub(self._channel)
         self._materials = material_pb2_grpc.MaterialServiceStub(self._channel)
         self._servers = server_pb2_grpc.ServerServiceStub(self._channel)
         self._sessions = session_pb2_grpc.SessionServiceStub(self._channel)
@@ -290,6 +308,29 @@ class Client:
             np.array([point.stress for point in answer.points]).reshape(-1, 3, 3),
             np.array([point.tangent for point in answer.points]).reshape(-1, 3, 3, 3, 3),
             curves,
+        )
+
+    def preview_impurity(self, scene, with_edges=False):
+        """Bakes the impurities of a Scene message on its mesh; nothing is simulated.
+
+        Returns an ImpurityPreview. Layers must hold what they are made of: the files that a layer may
+        name are read by the command line only.
+        """
+        answer = self._call(
+            self._impurities.PreviewImpurity,
+            impurity_pb2.PreviewImpurityRequest(scene=scene, with_edges=with_edges),
+            seconds=300,
+        )
+        return ImpurityPreview(
+            np.array(answer.potencies),
+            answer.edge_count,
+            answer.affected_edges,
+            answer.weakest,
+            answer.strongest,
+            np.array(answer.edge_nodes, np.int32).reshape(-1, 2),
+            np.array(answer.weakenings),
+            np.array(answer.strengths),
+            list(answer.warnings),
         )
 
     def download_mesh(self, asset, unit_scale=1.0):

@@ -23,6 +23,7 @@
 #include "server/gateway/random_id.h"
 #include "server/gateway/rpc/asset_service.h"
 #include "server/gateway/rpc/frame_service.h"
+#include "server/gateway/rpc/impurity_service.h"
 #include "server/gateway/rpc/material_service.h"
 #include "server/gateway/rpc/server_service.h"
 #include "server/gateway/rpc/session_service.h"
@@ -47,9 +48,9 @@ constexpr milliseconds kFastestClientPings{10'000};
 constexpr milliseconds kStreamGrace{2'000};
 constexpr seconds kWorkerGrace{10};
 
-constexpr const char* kServices[] = {"cleave.v1.AssetService", "cleave.v1.FrameService",
-                                     "cleave.v1.MaterialService", "cleave.v1.ServerService",
-                                     "cleave.v1.SessionService"};
+constexpr const char* kServices[] = {"cleave.v1.AssetService",    "cleave.v1.FrameService",
+                                     "cleave.v1.ImpurityService", "cleave.v1.MaterialService",
+                                     "cleave.v1.ServerService",   "cleave.v1.SessionService"};
 
 v1::ServerInfo DescribeServer(const AssetLimits& assets) {
   v1::ServerInfo info;
@@ -138,6 +139,7 @@ absl::Status Serve(const GatewayOptions& options) {
   AssetService asset_service(executor, checks, *assets);
   SessionService session_service(executor, checks, *sessions, drain);
   FrameService frame_service(executor, *sessions, drain);
+  ImpurityService impurity_service(checks, *assets, kMaxMessageBytes);
   MaterialService material_service(checks);
   ServerService server_service(DescribeServer(options.assets));
 
@@ -148,7 +150,8 @@ absl::Status Serve(const GatewayOptions& options) {
   int port = 0;
   builder.AddListeningPort(options.listen, grpc::InsecureServerCredentials(), &port);
   for (grpc::Service* service : std::initializer_list<grpc::Service*>{
-           &asset_service, &session_service, &frame_service, &material_service, &server_service}) {
+           &asset_service, &session_service, &frame_service, &impurity_service, &material_service,
+           &server_service}) {
     builder.RegisterService(service);
   }
   umask(0077);  // a unix socket is for its owner
