@@ -2,10 +2,12 @@
 
 #include <pugixml.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/io/mesh/mesh_builder.h"
 #include "client/io/mesh/vtk_cells.h"
 #include "client/io/mesh/vtu_arrays.h"
@@ -17,6 +19,16 @@ namespace {
 absl::Status In(absl::string_view place, const absl::Status& status) {
   if (status.ok()) return status;
   return absl::Status(status.code(), absl::StrCat(place, ": ", status.message()));
+}
+
+absl::StatusOr<uint64_t> CountOf(const pugi::xml_node& piece, const char* name) {
+  const absl::string_view text = piece.attribute(name).value();
+  uint64_t count = 0;
+  if (!absl::SimpleAtoi(text, &count)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, "=\"", text.substr(0, 40), "\" is not a count"));
+  }
+  return count;
 }
 
 class VtuReader {
@@ -31,16 +43,6 @@ class VtuReader {
   }
 
  private:
-  static absl::StatusOr<uint64_t> CountOf(const pugi::xml_node& piece, const char* name) {
-    const absl::string_view text = piece.attribute(name).value();
-    uint64_t count = 0;
-    if (!absl::SimpleAtoi(text, &count)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(name, "=\"", text.substr(0, 40), "\" is not a count"));
-    }
-    return count;
-  }
-
   template <typename Value>
   absl::Status ReadCellArray(const pugi::xml_node& cells, const char* name, uint64_t count,
                              std::vector<Value>& values) {
@@ -123,9 +125,10 @@ class VtuReader {
   VtkCells cells_;
 };
 
-}  // namespace
-
-absl::StatusOr<TetMesh> ParseVtu(absl::string_view bytes) {
+// Opens a file and calls read(grid, arrays) with its UnstructuredGrid.
+template <typename Read>
+auto WithGrid(absl::string_view bytes, const Read& read)
+    -> decltype(read(pugi::xml_node(), std::declval<const VtuArrays&>())) {
   // Appended data need not be XML: the document is read without it.
   std::string xml(bytes);
   absl::string_view appended;
@@ -161,7 +164,46 @@ absl::StatusOr<TetMesh> ParseVtu(absl::string_view bytes) {
   }
   CLEAVE_ASSIGN_OR_RETURN(const VtuArrays arrays,
                           VtuArrays::Of(file, appended, encoding != "base64"));
-  return VtuReader(arrays).Read(grid);
+  return read(grid, arrays);
+}
+
+}  // namespace
+
+absl::StatusOr<TetMesh> ParseVtu(absl::string_view bytes) {
+  return WithGrid(bytes, [](const pugi::xml_node& grid, const VtuArrays& arrays) {
+    return VtuReader(arrays).Read(grid);
+  });
+}
+
+absl::StatusOr<std::vector<double>> ParseVtuPointArray(absl::string_view bytes,
+                                                       const std::string& name) {
+  using Result = absl::StatusOr<std::vector<double>>;
+  return WithGrid(bytes, [&](const pugi::xml_node& grid, const VtuArrays& arrays) -> Result {
+    std::vector<double> values;
+    for (const pugi::xml_node& piece : grid.children("Piece")) {
+      CLEAVE_ASSIGN_OR_RETURN(const uint64_t points, CountOf(piece, "NumberOfPoints"));
+      if (points == 0) continue;
+      std::vector<pugi::xml_node> found;
+      std::vector<std::string> names;
+      for (const pugi::xml_node& array : piece.child("PointData").children("DataArray")) {
+        const absl::string_view components = array.attribute("NumberOfComponents").value();
+        if (!components.empty() && components != "1") continue;
+        names.emplace_back(array.attribute("Name").value());
+        if (name.empty() || names.back() == name) found.push_back(array);
+      }
+      if (found.size() != 1) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            name.empty() ? "no point array stands out: name one in `array`"
+                         : absl::StrCat("points have no array \"", name, "\" of one component"),
+            "; they have ", names.empty() ? "none" : absl::StrJoin(names, ", ")));
+      }
+      std::vector<double> part;
+      CLEAVE_RETURN_IF_ERROR(
+          In(found[0].attribute("Name").value(), arrays.Read(found[0], points, part)));
+      values.insert(values.end(), part.begin(), part.end());
+    }
+    return values;
+  });
 }
 
 }  // namespace cleave

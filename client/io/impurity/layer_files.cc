@@ -1,0 +1,127 @@
+#include "client/io/impurity/layer_files.h"
+
+#include <filesystem>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "client/io/impurity/picture_file.h"
+#include "client/io/impurity/ply_points.h"
+#include "client/io/mesh/file_bytes.h"
+#include "client/io/mesh/vtu.h"
+#include "core/base/status.h"
+
+namespace cleave {
+namespace {
+
+// The status with the path before it.
+absl::Status At(const std::string& path, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(path, ": ", status.message()));
+}
+
+absl::StatusOr<PlyPoints> ReadPly(const std::string& path, const std::string& property) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFileBytes(path));
+  auto points = ParsePlyPoints(bytes, property);
+  if (!points.ok()) return At(path, points.status());
+  return points;
+}
+
+absl::Status ReadImage(const std::string& path, v1::SegmentPattern& pattern) {
+  const v1::ImageDrawing& from = pattern.image();
+  ImageDrawing image;
+  if (from.has_threshold()) image.threshold = from.threshold();
+  image.bright = from.bright();
+  image.keep_width = from.keep_width();
+  if (from.has_tolerance()) image.tolerance = from.tolerance();
+  if (!(image.threshold > 0 && image.threshold < 1)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("threshold: ", image.threshold, " is outside (0, 1)"));
+  }
+  if (!(image.tolerance >= 0 && image.tolerance <= 100)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("tolerance: ", image.tolerance, " is outside [0, 100]"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const GreyRaster raster, ReadPictureFile(path));
+  const auto curves = TraceDrawing(raster, image);
+  if (!curves.ok()) return At(path, curves.status());
+  for (const DrawnCurve& curve : *curves) {
+    v1::DrawnCurve& to = *pattern.add_curves();
+    for (const auto& point : curve.points) to.mutable_points()->Add(point.begin(), point.end());
+    to.mutable_half_widths()->Add(curve.half_widths.begin(), curve.half_widths.end());
+  }
+  pattern.clear_image();
+  return absl::OkStatus();
+}
+
+absl::Status ReadNodeValues(const std::string& path, v1::NodeValues& values) {
+  std::vector<double> shares;
+  if (absl::EndsWithIgnoreCase(path, ".ply")) {
+    CLEAVE_ASSIGN_OR_RETURN(PlyPoints points, ReadPly(path, values.array()));
+    shares = std::move(points.values);
+  } else if (absl::EndsWithIgnoreCase(path, ".vtu")) {
+    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFileBytes(path));
+    auto array = ParseVtuPointArray(bytes, values.array());
+    if (!array.ok()) return At(path, array.status());
+    shares = *std::move(array);
+  } else {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ": values of nodes come in a .vtu or a .ply file"));
+  }
+  values.mutable_shares()->Add(shares.begin(), shares.end());
+  values.clear_file();
+  values.clear_array();
+  return absl::OkStatus();
+}
+
+absl::Status ReadPaint(const std::string& path, v1::SurfacePaint& paint) {
+  CLEAVE_ASSIGN_OR_RETURN(const PlyPoints points, ReadPly(path, paint.array()));
+  if (points.triangles.empty())
+    return absl::InvalidArgumentError(absl::StrCat(path, ": has no faces; paint needs a surface"));
+  paint.mutable_shares()->Add(points.values.begin(), points.values.end());
+  for (const Vec3& vertex : points.vertices)
+    paint.mutable_vertices()->Add(vertex.begin(), vertex.end());
+  for (const auto& triangle : points.triangles)
+    paint.mutable_triangles()->Add(triangle.begin(), triangle.end());
+  paint.clear_file();
+  paint.clear_array();
+  return absl::OkStatus();
+}
+
+constexpr char kBesides[] = "stands beside what it should hold; give one of both";
+
+}  // namespace
+
+std::vector<Fault> ReadLayerFiles(const std::string& folder, v1::Impurities& impurities) {
+  std::vector<Fault> faults;
+  for (int k = 0; k < impurities.layers_size(); ++k) {
+    v1::ImpurityLayer& layer = *impurities.mutable_layers(k);
+    const auto read = [&](const char* field, const std::string& file, bool besides,
+                          const auto& read_file) {
+      const std::string path = absl::StrCat("impurities.layers[", k, "].", field);
+      if (besides) {
+        faults.push_back({path, kBesides});
+        return;
+      }
+      const absl::Status status =
+          read_file((std::filesystem::path(folder) / file).lexically_normal().string());
+      if (!status.ok()) faults.push_back({path, std::string(status.message())});
+    };
+    if (layer.pattern().has_image() && !layer.pattern().image().file().empty()) {
+      v1::SegmentPattern& pattern = *layer.mutable_pattern();
+      read("pattern.image.file", pattern.image().file(), pattern.curves_size() > 0,
+           [&](const std::string& path) { return ReadImage(path, pattern); });
+    } else if (!layer.node_values().file().empty()) {
+      v1::NodeValues& values = *layer.mutable_node_values();
+      read("node_values.file", values.file(), values.shares_size() > 0,
+           [&](const std::string& path) { return ReadNodeValues(path, values); });
+    } else if (!layer.paint().file().empty()) {
+      v1::SurfacePaint& paint = *layer.mutable_paint();
+      read("paint.file", paint.file(), paint.shares_size() + paint.vertices_size() > 0,
+           [&](const std::string& path) { return ReadPaint(path, paint); });
+    }
+  }
+  return faults;
+}
+
+}  // namespace cleave

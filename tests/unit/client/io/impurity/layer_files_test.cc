@@ -1,0 +1,231 @@
+#include "client/io/impurity/layer_files.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/text_format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+// It needs size_t and FILE declared before it.
+#include <jpeglib.h>
+
+#include "client/io/export/vtu.h"
+#include "client/io/impurity/picture_file.h"
+#include "client/io/impurity/ply_points.h"
+#include "client/io/mesh/vtu.h"
+#include "client/io/preview/image.h"
+
+namespace cleave {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// A black line across a white picture of 40 x 20 pixels, from (10, 8) to (29, 11).
+Image Bar() {
+  Image image(40, 20);
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const bool ink = x >= 10 && x < 30 && y >= 8 && y < 12;
+      for (int k = 0; k < 3; ++k) image.at(x, y)[k] = ink ? 10 : 250;
+    }
+  }
+  return image;
+}
+
+std::string Jpeg(Image image) {
+  jpeg_compress_struct info;
+  jpeg_error_mgr errors;
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_compress(&info);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  jpeg_mem_dest(&info, &bytes, &size);
+  info.image_width = static_cast<JDIMENSION>(image.width);
+  info.image_height = static_cast<JDIMENSION>(image.height);
+  info.input_components = 3;
+  info.in_color_space = JCS_RGB;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, 95, TRUE);
+  jpeg_start_compress(&info, TRUE);
+  for (int y = 0; y < image.height; ++y) {
+    JSAMPROW row = image.at(0, y);
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+  const std::string result(reinterpret_cast<char*>(bytes), size);
+  jpeg_destroy_compress(&info);
+  std::free(bytes);
+  return result;
+}
+
+TEST(ParsePicture, ReadsPngAndJpegAlike) {
+  for (const std::string& bytes : {*EncodePng(Bar()), Jpeg(Bar())}) {
+    const auto raster = ParsePicture(bytes);
+    ASSERT_TRUE(raster.ok()) << raster.status();
+    ASSERT_EQ(raster->width, 40);
+    ASSERT_EQ(raster->height, 20);
+    for (int y = 0; y < 20; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        const bool ink = x >= 10 && x < 30 && y >= 8 && y < 12;
+        EXPECT_EQ(raster->at(x, y) < 0.5, ink) << x << " " << y;
+      }
+    }
+  }
+}
+
+TEST(ParsePicture, RefusesWhatIsDamaged) {
+  const std::string png = *EncodePng(Bar()), jpeg = Jpeg(Bar());
+  EXPECT_THAT(ParsePicture("GIF89a").status().message(), HasSubstr("neither a PNG nor a JPEG"));
+  EXPECT_THAT(ParsePicture("").status().message(), HasSubstr("neither"));
+  // The last chunk of a PNG, 12 bytes, says only that it is over.
+  for (size_t size = 8; size + 12 < png.size(); size += 7)
+    EXPECT_FALSE(ParsePicture(absl::string_view(png).substr(0, size)).ok()) << size;
+  for (size_t size = 4; size + 2 < jpeg.size(); size += 13)
+    EXPECT_FALSE(ParsePicture(absl::string_view(jpeg).substr(0, size)).ok()) << size;
+}
+
+constexpr char kPly[] =
+    "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\n"
+    "property float y\nproperty double z\nproperty uchar red\nproperty float wear\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0 255 0.25\n1 0 0 0 0.5\n1 1 0 51 0.75\n0 1 0.5 102 1\n4 0 1 2 3\n";
+
+TEST(ParsePlyPoints, ReadsPropertiesAndFaces) {
+  const auto worn = ParsePlyPoints(kPly, "");
+  ASSERT_TRUE(worn.ok()) << worn.status();
+  EXPECT_THAT(worn->values, ElementsAre(0.25, 0.5, 0.75, 1));
+  EXPECT_EQ(worn->vertices[3], (Vec3{0, 1, 0.5}));
+  EXPECT_THAT(worn->triangles,
+              ElementsAre(std::array<int32_t, 3>{0, 1, 2}, std::array<int32_t, 3>{0, 2, 3}));
+  EXPECT_THAT(ParsePlyPoints(kPly, "red")->values, ElementsAre(1, 0, 0.2, 0.4));
+  EXPECT_THAT(ParsePlyPoints(kPly, "tear").status().message(),
+              HasSubstr("no property \"tear\"; they have x, y, z, red, wear"));
+}
+
+TEST(ParsePlyPoints, ReadsBothByteOrders) {
+  for (const bool big : {false, true}) {
+    std::string bytes = "ply\nformat binary_";
+    bytes += big ? "big" : "little";
+    bytes +=
+        "_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "property short wear\nend_header\n";
+    const std::string one = {'\x00', '\x00', '\x80', '\x3f'};  // 1.0f
+    const std::string word = {'\xfe', '\xff'};                 // -2
+    for (int k = 0; k < 3; ++k) bytes += big ? std::string(one.rbegin(), one.rend()) : one;
+    bytes += big ? std::string(word.rbegin(), word.rend()) : word;
+    const auto points = ParsePlyPoints(bytes, "wear");
+    ASSERT_TRUE(points.ok()) << points.status();
+    EXPECT_EQ(points->vertices[0], (Vec3{1, 1, 1}));
+    EXPECT_THAT(points->values, ElementsAre(-2));
+    EXPECT_FALSE(ParsePlyPoints(absl::string_view(bytes).substr(0, bytes.size() - 1), "").ok());
+  }
+}
+
+TEST(ParsePlyPoints, RefusesWhatIsNoPly) {
+  const std::string text = kPly;
+  EXPECT_FALSE(ParsePlyPoints("", "").ok());
+  for (size_t size = 0; size + 8 < text.size(); size += 5)
+    EXPECT_FALSE(ParsePlyPoints(absl::string_view(text).substr(0, size), "wear").ok()) << size;
+  EXPECT_FALSE(
+      ParsePlyPoints("ply\nformat ascii 1.0\nelement vertex 999999999\nend_header\n", "").ok());
+  std::string outside = text;
+  outside.replace(outside.rfind("3\n"), 1, "4");
+  EXPECT_THAT(ParsePlyPoints(outside, "wear").status().message(), HasSubstr("names vertex 4 of 4"));
+}
+
+TEST(ParseVtuPointArray, ReadsOneArray) {
+  VtuGrid grid;
+  grid.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  grid.connectivity = {0, 1, 2, 3};
+  grid.offsets = {4};
+  grid.types = {kVtuTetrahedron};
+  const std::vector<double> wear = {0, 0.25, 0.5, 1}, other = {1, 1, 1, 1};
+  grid.point_data = {MakeVtuArray<double>("wear", wear), MakeVtuArray<double>("other", other)};
+  const std::string bytes = *EncodeVtu(grid, "test");
+  EXPECT_EQ(*ParseVtuPointArray(bytes, "wear"), wear);
+  EXPECT_THAT(ParseVtuPointArray(bytes, "").status().message(), HasSubstr("wear, other"));
+  EXPECT_THAT(ParseVtuPointArray(bytes, "tear").status().message(), HasSubstr("\"tear\""));
+  EXPECT_FALSE(ParseVtuPointArray("<VTKFile/>", "wear").ok());
+}
+
+class LayerFiles : public ::testing::Test {
+ protected:
+  LayerFiles() {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("layer_files_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    Write("bar.png", *EncodePng(Bar()));
+    Write("blank.png", *EncodePng(Image(8, 8)));
+    Write("worn.ply", kPly);
+  }
+  ~LayerFiles() override { std::filesystem::remove_all(folder_); }
+  void Write(const char* name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+  std::vector<Fault> Read(const std::string& layers) {
+    EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(layers, &impurities_));
+    return ReadLayerFiles(folder_.string(), impurities_);
+  }
+
+  std::filesystem::path folder_;
+  v1::Impurities impurities_;
+};
+
+TEST_F(LayerFiles, PutTheirContentInTheirPlace) {
+  const auto faults = Read(R"pb(
+    layers {
+      pattern {
+        image { file: "bar.png" }
+        scale: 2
+      }
+    }
+    layers { node_values { file: "worn.ply" array: "wear" } }
+    layers { paint { file: "worn.ply" array: "red" depth: 0.1 } }
+    layers { noise {} })pb");
+  EXPECT_TRUE(faults.empty()) << faults[0].description;
+  const v1::SegmentPattern& pattern = impurities_.layers(0).pattern();
+  EXPECT_FALSE(pattern.has_image());
+  EXPECT_EQ(pattern.scale(), 2);
+  ASSERT_EQ(pattern.curves_size(), 1);
+  const auto& points = pattern.curves(0).points();
+  // The bar lies along x through the middle of the picture.
+  EXPECT_NEAR(points[1], 0, 0.03);
+  EXPECT_GT(std::abs(points[0] - points[points.size() - 2]), 0.35);
+  const v1::NodeValues& values = impurities_.layers(1).node_values();
+  EXPECT_THAT(values.shares(), ElementsAre(0.25, 0.5, 0.75, 1));
+  EXPECT_EQ(values.file() + values.array(), "");
+  const v1::SurfacePaint& paint = impurities_.layers(2).paint();
+  EXPECT_THAT(paint.shares(), ElementsAre(1, 0, 0.2, 0.4));
+  EXPECT_EQ(paint.vertices_size(), 12);
+  EXPECT_THAT(paint.triangles(), ElementsAre(0, 1, 2, 0, 2, 3));
+}
+
+TEST_F(LayerFiles, NameTheLayerOfEveryFault) {
+  const auto faults = Read(R"pb(
+    layers { pattern { image { file: "none.png" } } }
+    layers { pattern { image { file: "blank.png" } } }
+    layers { pattern { image { file: "bar.png" threshold: 2 } } }
+    layers { node_values { file: "worn.txt" } }
+    layers { node_values { file: "worn.ply" shares: 1 } }
+    layers { paint { file: "worn.ply" array: "tear" } })pb");
+  ASSERT_EQ(faults.size(), 6u);
+  EXPECT_EQ(faults[0].field, "impurities.layers[0].pattern.image.file");
+  EXPECT_THAT(faults[0].description, HasSubstr("none.png"));
+  // A black picture: everything is drawn.
+  EXPECT_THAT(faults[1].description, HasSubstr("blank.png: every pixel is darker"));
+  EXPECT_THAT(faults[2].description, StartsWith("threshold: 2 is outside (0, 1)"));
+  EXPECT_THAT(faults[3].description, HasSubstr(".vtu or a .ply"));
+  EXPECT_THAT(faults[4].description, HasSubstr("stands beside"));
+  EXPECT_EQ(faults[5].field, "impurities.layers[5].paint.file");
+  EXPECT_THAT(faults[5].description, HasSubstr("no property \"tear\""));
+}
+
+}  // namespace
+}  // namespace cleave
