@@ -1,5 +1,6 @@
 #include "client/cli/scene_input.h"
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <type_traits>
@@ -11,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/cpp/rpc_error.h"
+#include "client/io/impurity/layer_files.h"
 #include "client/io/mesh/file_bytes.h"
 #include "client/io/mesh/mesh_file.h"
 #include "client/io/surface/surface_file.h"
@@ -99,17 +101,49 @@ absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
   return absl::OkStatus();
 }
 
+// All that follows the reading of the scene file.
+absl::Status Complete(SceneInput& input) {
+  CLEAVE_RETURN_IF_ERROR(ReadColliderSurfaces(input.file));
+  if (input.file.scene.has_impurities()) {
+    const std::vector<Fault> faults =
+        ReadLayerFiles(PathBeside(input.file, ""), *input.file.scene.mutable_impurities());
+    if (!faults.empty()) return absl::InvalidArgumentError(input.file.Describe(faults));
+  }
+  CLEAVE_RETURN_IF_ERROR(CheckScene(input));
+  const std::string mesh_path = MeshPath(input.file);
+  if (mesh_path.empty()) return absl::OkStatus();
+  CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
+  return CheckWithMesh(input, mesh_path);
+}
+
 }  // namespace
 
 absl::StatusOr<SceneInput> LoadScene(const std::string& path) {
   SceneInput input;
   CLEAVE_ASSIGN_OR_RETURN(input.file, ReadSceneFile(path));
-  CLEAVE_RETURN_IF_ERROR(ReadColliderSurfaces(input.file));
-  CLEAVE_RETURN_IF_ERROR(CheckScene(input));
-  const std::string mesh_path = MeshPath(input.file);
-  if (mesh_path.empty()) return input;
-  CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
-  CLEAVE_RETURN_IF_ERROR(CheckWithMesh(input, mesh_path));
+  CLEAVE_RETURN_IF_ERROR(Complete(input));
+  return input;
+}
+
+absl::StatusOr<SceneInput> LoadSceneWithLayers(const std::string& path, double unit_scale,
+                                               const std::vector<v1::ImpurityLayer>& layers) {
+  SceneInput input;
+  if (IsSceneName(path)) {
+    CLEAVE_ASSIGN_OR_RETURN(input.file, ReadSceneFile(path));
+  } else {
+    input.file.path = path;
+    v1::Scene& scene = input.file.scene;
+    scene.mutable_mesh()->set_file(std::filesystem::path(path).filename().string());
+    scene.mutable_mesh()->set_unit_scale(unit_scale);
+    v1::Material& material = *scene.add_materials();
+    material.set_youngs_modulus(1);
+    material.set_density(1);
+    material.set_poisson_ratio(0.3);
+    material.set_tensile_strength(1);
+  }
+  for (const v1::ImpurityLayer& layer : layers)
+    *input.file.scene.mutable_impurities()->add_layers() = layer;
+  CLEAVE_RETURN_IF_ERROR(Complete(input));
   return input;
 }
 

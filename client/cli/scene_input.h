@@ -27,6 +27,12 @@ struct SceneInput {
 // every fault of the scene with its line, every fault of the mesh with its file, one a line.
 absl::StatusOr<SceneInput> LoadScene(const std::string& path);
 
+// The same with further layers on the scene's impurities. `path` may also be a mesh file: then the
+// scene is a body of it, `unit_scale` metres a unit, with a tensile strength of 1 Pa. Files of
+// layers lie beside `path`.
+absl::StatusOr<SceneInput> LoadSceneWithLayers(const std::string& path, double unit_scale,
+                                               const std::vector<v1::ImpurityLayer>& layers);
+
 // The mesh (m, oriented) of a scene: its file's, or built where it is procedural.
 // FailedPrecondition when it is an asset, which only a server has.
 absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input);

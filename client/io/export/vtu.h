@@ -37,6 +37,7 @@ VtuArray MakeVtuArray(absl::string_view name, std::span<const T> values) {
 VtuArray MakeVtuVectors(absl::string_view name, std::span<const Vec3> values);
 
 // VTK's numbers of the cell types that Cleave writes.
+inline constexpr uint8_t kVtuLine = 3;
 inline constexpr uint8_t kVtuTriangle = 5;
 inline constexpr uint8_t kVtuTetrahedron = 10;
 inline constexpr uint8_t kVtuHexahedron = 12;

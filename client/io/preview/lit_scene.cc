@@ -188,6 +188,12 @@ void LitScene::BuildColors(const RenderStyle& style) {
     }
     return;
   }
+  if (style.color_by == ColorBy::kImpurity) {
+    body_.point_colors.reserve(surface.points.size());
+    for (const float impurity : surface.impurities)
+      body_.point_colors.push_back(ToLinear(ImpurityColor(impurity)));
+    return;
+  }
   body_.colors.reserve(surface.triangles.size());
   for (size_t i = 0; i < surface.triangles.size(); ++i) {
     const bool inside = surface.inside[i] != 0;

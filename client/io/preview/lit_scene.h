@@ -59,7 +59,7 @@ class LitScene {
     const ShownSurface& surface;
     std::vector<std::array<Eigen::Vector3f, 3>> normals;  // of corners, a triangle each
     std::vector<Eigen::Vector3f> colors;                  // a triangle each
-    std::vector<Eigen::Vector3f> point_colors;            // a point each; strain only
+    std::vector<Eigen::Vector3f> point_colors;            // a point each; strain and impurity only
   };
 
   // Single precision is enough about the middle of the scene, wherever that lies.

@@ -159,7 +159,8 @@ absl::Status Studio::Prepare() {
       AddSwatches(looks);
       break;
     case ColorBy::kPiece:
-      break;  // pieces have no names
+    case ColorBy::kImpurity:
+      break;  // pieces have no names, runs no impurities
   }
   return absl::OkStatus();
 }

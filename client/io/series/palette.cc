@@ -73,4 +73,8 @@ Color SequentialColor(double value) {
              static_cast<float>(place - static_cast<double>(low)));
 }
 
+Color ImpurityColor(double value) {
+  return Mix(FromHex(0xE8C53A), FromHex(0xC4168C), static_cast<float>(std::clamp(value, 0.0, 1.0)));
+}
+
 }  // namespace cleave

@@ -21,6 +21,10 @@ Color PieceColor(int32_t piece);
 // over green to yellow; values outside take the ends.
 Color SequentialColor(double value);
 
+// From yellow for the pure body at 0 to magenta for the most impure at 1; values outside take the
+// ends.
+Color ImpurityColor(double value);
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CLIENT_IO_SERIES_PALETTE_H_

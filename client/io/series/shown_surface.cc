@@ -26,6 +26,15 @@ void CheckFinite(absl::string_view name, const std::vector<Vec3>& vectors, Fault
   }
 }
 
+void CheckFinite(absl::string_view name, const std::vector<float>& values, Faults& faults) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) continue;
+    faults.Error(absl::StrCat(name, "[", i, "]"),
+                 absl::StrCat(values[i], " is not a finite number"));
+    return;
+  }
+}
+
 }  // namespace
 
 absl::Status CheckShownSurface(const ShownSurface& surface) {
@@ -39,17 +48,14 @@ absl::Status CheckShownSurface(const ShownSurface& surface) {
   CheckSize("inside", surface.inside.size(), triangles, false, faults);
   CheckSize("regions", surface.regions.size(), triangles, false, faults);
   CheckSize("strains", surface.strains.size(), points, true, faults);
+  CheckSize("impurities", surface.impurities.size(), points, true, faults);
   CheckSize("displacements", surface.displacements.size(), points, true, faults);
   CheckSize("velocities", surface.velocities.size(), points, true, faults);
   CheckFinite("points", surface.points, faults);
   CheckFinite("displacements", surface.displacements, faults);
   CheckFinite("velocities", surface.velocities, faults);
-  for (size_t i = 0; i < surface.strains.size(); ++i) {
-    if (std::isfinite(surface.strains[i])) continue;
-    faults.Error(absl::StrCat("strains[", i, "]"),
-                 absl::StrCat(surface.strains[i], " is not a finite number"));
-    break;
-  }
+  CheckFinite("strains", surface.strains, faults);
+  CheckFinite("impurities", surface.impurities, faults);
   for (size_t i = 0; i < triangles; ++i) {
     for (const int32_t point : surface.triangles[i]) {
       if (point >= 0 && static_cast<size_t>(point) < points) continue;

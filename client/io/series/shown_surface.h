@@ -27,6 +27,7 @@ struct ShownSurface {
 
   // One a point, or empty where unknown.
   std::vector<float> strains;       // largest principal stretch minus 1
+  std::vector<float> impurities;    // [0, 1], 1 for the worst of the body
   std::vector<Vec3> displacements;  // m, from rest
   std::vector<Vec3> velocities;     // m/s
 };

@@ -1,0 +1,98 @@
+#include "client/cli/impurity_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/io/export/vtu.h"
+
+namespace cleave {
+namespace {
+
+std::string StrengthText(double strength, bool relative) {
+  if (std::isinf(strength)) return "unbreakable";
+  if (strength == 0) return "cut";
+  return relative ? absl::StrFormat("%.4g of the pure body's", strength)
+                  : absl::StrFormat("%.4g Pa", strength);
+}
+
+std::vector<double> Finite(const google::protobuf::RepeatedField<double>& values) {
+  std::vector<double> finite(values.begin(), values.end());
+  for (double& value : finite) value = std::min(value, std::numeric_limits<double>::max());
+  return finite;
+}
+
+}  // namespace
+
+std::string ImpurityText(const v1::PreviewImpurityResponse& preview, bool relative) {
+  double least = 0, most = 0;
+  int64_t impure = 0;
+  for (const double potency : preview.potencies()) {
+    least = std::min(least, potency);
+    most = std::max(most, potency);
+    impure += potency != 0;
+  }
+  const double share = preview.edge_count() > 0 ? static_cast<double>(preview.affected_edges()) /
+                                                      static_cast<double>(preview.edge_count())
+                                                : 0;
+  return absl::StrCat(absl::StrFormat("nodes: %d, %d of them impure; potency %.4g to %.4g\n",
+                                      preview.potencies_size(), impure, least, most),
+                      absl::StrFormat("edges: %d, %d of them affected (%.2f %%)\n",
+                                      preview.edge_count(), preview.affected_edges(), 100 * share),
+                      "strength: ", StrengthText(preview.weakest(), relative), " to ",
+                      StrengthText(preview.strongest(), relative));
+}
+
+std::vector<double> ShownImpurities(const v1::PreviewImpurityResponse& preview) {
+  double most = 0;
+  for (const double potency : preview.potencies()) most = std::max(most, std::abs(potency));
+  std::vector<double> shown;
+  for (const double potency : preview.potencies())
+    shown.push_back(most > 0 ? std::abs(potency) / most : 0);
+  for (int edge = 0; edge < preview.weakenings_size(); ++edge) {
+    const double weakening = preview.weakenings(edge);
+    const double change = 1 - std::min(weakening, 1 / weakening);
+    for (const int end : {0, 1}) {
+      double& node = shown[static_cast<size_t>(preview.edge_nodes(2 * edge + end))];
+      node = std::max(node, change);
+    }
+  }
+  return shown;
+}
+
+absl::StatusOr<std::string> PotencyVtu(const TetMesh& mesh,
+                                       const v1::PreviewImpurityResponse& preview) {
+  VtuGrid grid;
+  grid.points = mesh.rest_positions;
+  for (const auto& tet : mesh.tets) {
+    grid.connectivity.insert(grid.connectivity.end(), tet.begin(), tet.end());
+    grid.offsets.push_back(static_cast<int64_t>(grid.connectivity.size()));
+  }
+  grid.types.assign(mesh.tets.size(), kVtuTetrahedron);
+  const std::vector<double> potencies(preview.potencies().begin(), preview.potencies().end());
+  const std::vector<double> shown = ShownImpurities(preview);
+  grid.point_data = {MakeVtuArray<double>("potency", potencies),
+                     MakeVtuArray<double>("impurity", shown)};
+  if (!mesh.tet_regions.empty())
+    grid.cell_data = {MakeVtuArray<int32_t>("region", mesh.tet_regions)};
+  return EncodeVtu(grid, "impurities at rest");
+}
+
+absl::StatusOr<std::string> AffectedEdgesVtu(const TetMesh& mesh,
+                                             const v1::PreviewImpurityResponse& preview) {
+  VtuGrid grid;
+  grid.points = mesh.rest_positions;
+  grid.connectivity.assign(preview.edge_nodes().begin(), preview.edge_nodes().end());
+  for (int edge = 1; edge <= preview.weakenings_size(); ++edge) grid.offsets.push_back(2 * edge);
+  grid.types.assign(grid.offsets.size(), kVtuLine);
+  const std::vector<double> weakenings = Finite(preview.weakenings());
+  const std::vector<double> strengths = Finite(preview.strengths());
+  grid.cell_data = {MakeVtuArray<double>("weakening", weakenings),
+                    MakeVtuArray<double>("strength", strengths)};
+  return EncodeVtu(grid, "edges that impurities affect");
+}
+
+}  // namespace cleave
