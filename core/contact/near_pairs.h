@@ -18,6 +18,8 @@ class NearPairs {
   const std::vector<std::pair<int32_t, int32_t>>& Find(const std::vector<Eigen::Vector3d>& points,
                                                        const std::vector<int32_t>& groups,
                                                        double reach);
+  // What the last Find found.
+  const std::vector<std::pair<int32_t, int32_t>>& found() const { return pairs_; }
 
   int64_t bytes() const;
 

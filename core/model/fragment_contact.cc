@@ -71,6 +71,7 @@ void FragmentContact::UpdatePieces() {
   std::vector<uint8_t> broken(incidence_.edges.size(), 0);
   for (const Spring& spring : springs_) broken[static_cast<size_t>(spring.edge)] = 1;
   piece_count_ = LabelComponents(incidence_, broken, pieces_);
+  searched_reach_ = 0;
 }
 
 void FragmentContact::StartBroken(std::span<const int32_t> edges) {
@@ -130,11 +131,19 @@ void FragmentContact::BeginStep(double start, double end, const State& state) {
   if (piece_count_ < 2 && springs_.empty()) return;
   start_displacements_ = state.displacements;
   if (piece_count_ < 2) return;
+  bool moved = points_.empty();
   points_.resize(mesh_.rest_positions.size());
-  for (size_t n = 0; n < points_.size(); ++n)
-    points_[n] = PointOf(static_cast<int32_t>(n), state.displacements);
+  for (size_t n = 0; n < points_.size(); ++n) {
+    const Vector point = PointOf(static_cast<int32_t>(n), state.displacements);
+    moved = moved || point != points_[n];
+    points_[n] = point;
+  }
+  // Where all rests, the last search found what this one would.
+  const double reach = Reach(end - start, state);
+  if (moved || reach != searched_reach_) near_.Find(points_, pieces_, reach);
+  searched_reach_ = reach;
   auto old = pairs_.begin();
-  for (const auto& [i, j] : near_.Find(points_, pieces_, Reach(end - start, state))) {
+  for (const auto& [i, j] : near_.found()) {
     while (old != pairs_.end() && std::pair(old->first, old->second) < std::pair(i, j)) ++old;
     const Vector apart = points_[static_cast<size_t>(i)] - points_[static_cast<size_t>(j)];
     const double distance = apart.norm();

@@ -106,6 +106,7 @@ class FragmentContact final : public NodeTerm {
   std::vector<Active> active_;  // of each of them
   NearPairs near_;
   std::vector<Vector> points_;
+  double searched_reach_ = 0;  // m, of near_, with points_ and pieces_; 0: of others
   NodalVector scratch_forces_;
 };
 
