@@ -26,6 +26,8 @@ absl::StatusOr<FrameDecoder> FrameDecoder::Create(absl::string_view header_bytes
   decoder.header_bytes_ = std::string(header_bytes);
   if (header.predictor_id == kPredictorInterpolation) {
     decoder.interpolation_.emplace(header, mesh);
+    decoder.labels_.emplace(decoder.interpolation_->order(), decoder.interpolation_->stencils(),
+                            mesh.edges);
   } else {
     decoder.rest_positions_.assign(mesh.rest_positions.begin(), mesh.rest_positions.end());
   }
@@ -57,11 +59,26 @@ absl::Status FrameDecoder::CheckBase(const FrameHeader& frame) const {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::vector<int32_t>> FrameDecoder::DecodeLabels(const Section& section) const {
+  if (section.coder != kCoderContextRans || section.first != 0 ||
+      section.prediction != Prediction::kNone || section.count != header_.node_count ||
+      section.raw_bytes != section.count) {
+    return absl::DataLossError("topology labels do not fit their frame");
+  }
+  return labels_->Decode(section.coded);
+}
+
 absl::Status FrameDecoder::DecodeTopology(const FrameParts& parts, StreamState& next,
                                           size_t& section) const {
   const bool key = parts.header.kind == FrameKind::kKey;
   const SectionType expected = key ? SectionType::kTopologyCheckpoint : SectionType::kTopologyDelta;
   const size_t before = key ? 0 : state_.broken_edges.size();
+  std::vector<int32_t> between;
+  if (key && labels_.has_value() && !parts.sections.empty() &&
+      parts.sections[0].type == SectionType::kTopologyLabels) {
+    CLEAVE_ASSIGN_OR_RETURN(between, DecodeLabels(parts.sections[0]));
+    ++section;
+  }
   std::vector<int32_t> listed;
   std::string raw;
   for (; section < parts.sections.size() && parts.sections[section].type == expected; ++section) {
@@ -82,12 +99,9 @@ absl::Status FrameDecoder::DecodeTopology(const FrameParts& parts, StreamState& 
         FromGaps(raw, part.count, first, static_cast<int64_t>(header_.edge_count), listed));
   }
   next.broken_edges.clear();
-  if (key) {
-    next.broken_edges = std::move(listed);
-  } else {
-    std::set_union(state_.broken_edges.begin(), state_.broken_edges.end(), listed.begin(),
-                   listed.end(), std::back_inserter(next.broken_edges));
-  }
+  const std::vector<int32_t>& others = key ? between : state_.broken_edges;
+  std::set_union(others.begin(), others.end(), listed.begin(), listed.end(),
+                 std::back_inserter(next.broken_edges));
   // An edge that breaks a second time makes the union too small.
   if (next.broken_edges.size() != parts.header.broken_edges) {
     return absl::DataLossError(absl::StrCat("frame declares ", parts.header.broken_edges,

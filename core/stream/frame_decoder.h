@@ -14,6 +14,7 @@
 #include "core/stream/frame.h"
 #include "core/stream/frame_header.h"
 #include "core/stream/interpolation_decoder.h"
+#include "core/stream/piece_labels.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_mesh.h"
 #include "core/stream/stream_state.h"
@@ -55,6 +56,7 @@ class FrameDecoder {
  private:
   FrameDecoder() = default;
   absl::Status CheckBase(const FrameHeader& frame) const;
+  absl::StatusOr<std::vector<int32_t>> DecodeLabels(const Section& section) const;
   absl::Status DecodeTopology(const FrameParts& parts, StreamState& next, size_t& section) const;
   absl::Status DecodePositions(const FrameParts& parts, size_t section, StreamState& next) const;
   absl::Status DecodeChunk(const Section& section, const std::vector<int32_t>& rest,
@@ -70,6 +72,7 @@ class FrameDecoder {
   StreamState scratch_;  // where the next frame is decoded, so that a bad one changes nothing
   uint64_t state_hash_ = 0;
   std::optional<InterpolationDecoder> interpolation_;  // with predictor 2
+  std::optional<PieceLabels> labels_;                  // with predictor 2
   Frame frame_;
 };
 

@@ -50,6 +50,8 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
       return absl::FailedPreconditionError("the state to go on from is of another predictor");
     }
     encoder.interpolation_.emplace(header, mesh);
+    encoder.labels_.emplace(encoder.interpolation_->order(), encoder.interpolation_->stencils(),
+                            mesh.edges);
     return encoder;
   }
   encoder.rest_ = QuantiseRest(encoder.rest_positions_, header.origin,
@@ -160,6 +162,38 @@ void FrameEncoder::AppendTopology(SectionType type, std::span<const int32_t> edg
   }
 }
 
+// As labels and a list of what they do not say, or as a list, whichever is shorter.
+void FrameEncoder::AppendCheckpoint(std::span<const int32_t> edges, FrameHeader& header,
+                                    std::string& body) const {
+  FrameHeader with_list = header;
+  std::string list;
+  AppendTopology(SectionType::kTopologyCheckpoint, edges, with_list, list);
+  if (labels_.has_value() && !edges.empty()) {
+    const std::string coded = labels_->Encode(edges);
+    const absl::StatusOr<std::vector<int32_t>> said = labels_->Decode(coded);
+    std::vector<int32_t> unsaid;
+    std::set_difference(edges.begin(), edges.end(), said->begin(), said->end(),
+                        std::back_inserter(unsaid));
+    FrameHeader with_labels = header;
+    std::string labelled;
+    AppendSection({.type = SectionType::kTopologyLabels,
+                   .coder = kCoderContextRans,
+                   .raw_bytes = static_cast<uint32_t>(header_.node_count),
+                   .count = static_cast<uint32_t>(header_.node_count),
+                   .coded = coded},
+                  labelled);
+    ++with_labels.section_count;
+    AppendTopology(SectionType::kTopologyCheckpoint, unsaid, with_labels, labelled);
+    if (labelled.size() < list.size()) {
+      header.section_count = with_labels.section_count;
+      body += labelled;
+      return;
+    }
+  }
+  header.section_count = with_list.section_count;
+  body += list;
+}
+
 void FrameEncoder::AppendPositions(bool key, FrameHeader& header, std::string& body) const {
   const auto nodes = static_cast<int64_t>(header_.node_count);
   const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
@@ -254,7 +288,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   };
   if (key) {
     header.kind = FrameKind::kKey;
-    AppendTopology(SectionType::kTopologyCheckpoint, frame.broken_edges, header, body);
+    AppendCheckpoint(frame.broken_edges, header, body);
     append_positions();
   } else if (!breaks && all_hold()) {
     header.kind = FrameKind::kHold;

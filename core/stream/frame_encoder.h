@@ -13,6 +13,7 @@
 #include "core/stream/frame.h"
 #include "core/stream/frame_header.h"
 #include "core/stream/interpolation_encoder.h"
+#include "core/stream/piece_labels.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_mesh.h"
 #include "core/stream/stream_state.h"
@@ -63,6 +64,8 @@ class FrameEncoder {
   FrameEncoder() = default;
   absl::Status CheckFrame(const Frame& frame) const;
   absl::Status Quantise(const std::vector<Vec3>& positions);
+  void AppendCheckpoint(std::span<const int32_t> edges, FrameHeader& header,
+                        std::string& body) const;
   void AppendTopology(SectionType type, std::span<const int32_t> edges, FrameHeader& header,
                       std::string& body) const;
   void AppendPositions(bool key, FrameHeader& header, std::string& body) const;
@@ -76,6 +79,7 @@ class FrameEncoder {
   StreamState state_;
   std::vector<int32_t> next_;                          // quantised positions of the frame in work
   std::optional<InterpolationEncoder> interpolation_;  // with predictor 2
+  std::optional<PieceLabels> labels_;                  // with predictor 2
   ResidualHistory next_residuals_;
 };
 

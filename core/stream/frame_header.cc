@@ -125,7 +125,7 @@ absl::StatusOr<FrameParts> SplitFrame(absl::string_view bytes) {
       return absl::DataLossError(absl::StrCat("section ", index, " fails its checksum"));
     }
     if (type >= static_cast<uint16_t>(SectionType::kTopologyDelta) &&
-        type <= static_cast<uint16_t>(SectionType::kMotion)) {
+        type <= static_cast<uint16_t>(SectionType::kTopologyLabels)) {
       parts.sections.push_back(section);
     } else if ((type & kOptionalSection) == 0) {
       return absl::UnimplementedError(absl::StrCat("section type ", type, " is not known"));

@@ -44,6 +44,7 @@ enum class SectionType : uint16_t {
   kTopologyCheckpoint = 2,  // all broken edges
   kPositions = 3,           // a chunk of nodes
   kMotion = 4,              // how predictor 2 predicts the frame: what holds, continuations
+  kTopologyLabels = 5,      // broken edges between pieces, by the piece of each node
 };
 inline constexpr uint16_t kOptionalSection = 0x8000;  // set in a type that readers may skip
 

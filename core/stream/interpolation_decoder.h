@@ -29,6 +29,7 @@ class InterpolationDecoder {
   void Accept(FrameKind kind);
 
   const NodeOrder& order() const { return predictor_.order(); }
+  const Stencils& stencils() const { return predictor_.stencils(); }
 
  private:
   absl::Status DecodePlanes(const Section& section, std::span<const int32_t> moving);

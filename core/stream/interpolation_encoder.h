@@ -22,6 +22,9 @@ class InterpolationEncoder {
  public:
   InterpolationEncoder(const StreamHeader& header, const StreamMesh& mesh);
 
+  const NodeOrder& order() const { return predictor_.order(); }
+  const Stencils& stencils() const { return predictor_.stencils(); }
+
   // Takes the positions (m) of the next frame. Error, which changes nothing that matters:
   // OutOfRange for a coordinate that is not on the grid, naming the first such node.
   absl::Status SetTargets(const std::vector<Vec3>& positions, double tolerance);

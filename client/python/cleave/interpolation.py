@@ -61,27 +61,29 @@ class NodeOrder:
 
 
 class Stencils:
-    """Sections 7.2 to 7.4: pieces, stencils and weights of one set of broken edges."""
+    """Sections 7.2 to 7.4: pieces, stencils and weights of one set of broken edges, at first of
+    none. ends: the places of each edge."""
 
     def __init__(self, order, rest, edges):
         self._order = order
         self._rest = rest[order.nodes]
         place = np.empty(len(rest), int)
         place[order.nodes] = np.arange(len(rest))
-        self._ends = place[np.asarray(edges, int).reshape(-1, 2)]
+        self.ends = place[np.asarray(edges, int).reshape(-1, 2)]
         self.places = np.full((len(rest), _STENCIL), -1)
         self.weights = np.zeros((len(rest), _STENCIL), "i8")
         self._in_space = np.ones(len(rest), bool)
         self._broken = None
+        self.set_broken(np.empty(0, int))
 
     def set_broken(self, broken):
         """Brings everything to this set of broken edges. Returns the places with new stencils."""
         if self._broken is not None and np.array_equal(broken, self._broken):
             return np.empty(0, int)
         count = len(self._rest)
-        whole = np.ones(len(self._ends), bool)
+        whole = np.ones(len(self.ends), bool)
         whole[broken] = False
-        ends = self._ends[whole]
+        ends = self.ends[whole]
         both = np.concatenate((ends, ends[:, ::-1]))
         both = both[np.lexsort((both[:, 1], both[:, 0]))]
         self._neighbours = both[:, 1]
@@ -89,7 +91,7 @@ class Stencils:
         self._find_pieces(ends)
         if self._broken is not None and np.isin(self._broken, broken).all():
             # A superset of those that can change: around the breaks, and what was found in space.
-            near = np.unique(self._ends[np.setdiff1d(broken, self._broken)])
+            near = np.unique(self.ends[np.setdiff1d(broken, self._broken)])
             touched = self._in_space.copy()
             touched[near] = True
             touched[self._expand(near)[1]] = True

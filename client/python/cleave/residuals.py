@@ -33,14 +33,18 @@ def _prior():
 _PRIOR = _prior()
 
 
-def _ranges(counts):
-    """Of one alphabet: (symbol, first slot, frequency) of each slot."""
+def _frequencies(counts):
     counts = [int(count) for count in counts]
     total = sum(counts)
     frequencies = [
         1 + (count * (4096 - len(counts)) // total if total else 0) for count in counts
     ]
     frequencies[counts.index(max(counts))] += 4096 - sum(frequencies)
+    return frequencies
+
+
+def slots_of(frequencies):
+    """Of one alphabet: (symbol, first slot, frequency) of each slot."""
     slots, start = [], 0
     for symbol, frequency in enumerate(frequencies):
         slots += [(symbol, start, frequency)] * frequency
@@ -102,72 +106,74 @@ class _FrameDecoder:
     def _table(self, alphabet, index):
         table = self._slots[alphabet].get(index)
         if table is None:
-            table = self._slots[alphabet][index] = _ranges(self._begin[alphabet][index])
+            table = self._slots[alphabet][index] = slots_of(
+                _frequencies(self._begin[alphabet][index])
+            )
         return table
 
     def _decode(self, coded, classes):
-        if len(coded) < 20:
-            raise ValueError("residuals are truncated")
-        count, *states = struct.unpack_from("<5I", coded)
-        if len(coded) < 20 + 2 * count or min(states) < 2**16:
-            raise ValueError("residuals are truncated")
-        words = np.frombuffer(coded, "<u2", count, 20).tolist()
-        words.reverse()
-        bits = _PlainBits(coded[20 + 2 * count :])
-        at = 0
-
-        def take(slots):
-            nonlocal at
-            state = states[at]
-            symbol, first, frequency = slots[state & 4095]
-            state = frequency * (state >> 12) + (state & 4095) - first
-            if state < 2**16:
-                if not words:
-                    raise ValueError("residuals are truncated")
-                state = state << 16 | words.pop()
-            states[at] = state
-            at = (at + 1) & 3
-            return symbol
-
+        reader = RansReader(coded)
         residuals = []
         masks, tokens = self._added
         for index in classes:
-            mask = take(self._table(0, index))
+            mask = reader.take(self._table(0, index))
             masks[index, mask] += 1
             for axis in range(3):
                 if not mask >> axis & 1:
                     residuals.append(0)
                     continue
-                m = take(self._table(1, index))
+                m = reader.take(self._table(1, index))
                 tokens[index, m] += 1
-                negative = bits.take(1)
+                negative = reader.bits(1)
                 if m >= 16:
                     low = 3 + (m - 16) // 2
-                    m = (2 + m % 2) << low | bits.take(low)
+                    m = (2 + m % 2) << low | reader.bits(low)
                 residuals.append(-m - 1 if negative else m + 1)
-        if words or states != [2**16] * 4 or not bits.finished():
-            raise ValueError("residuals do not end with their section")
+        reader.finish()
         return residuals
 
 
-class _PlainBits:
-    """The bits of bytes, the lowest of a byte first."""
+class RansReader:
+    """Section 6.6, "Bytes". Raises ValueError for what is not there."""
 
-    def __init__(self, data):
-        self._bits = np.unpackbits(np.frombuffer(data, "u1"), bitorder="little").tolist()
+    def __init__(self, coded):
+        if len(coded) < 20:
+            raise ValueError("rANS bytes are truncated")
+        count, *self._states = struct.unpack_from("<5I", coded)
+        if len(coded) < 20 + 2 * count or min(self._states) < 2**16:
+            raise ValueError("rANS bytes are truncated")
+        self._words = np.frombuffer(coded, "<u2", count, 20)[::-1].tolist()
+        plain = np.frombuffer(coded, "u1", offset=20 + 2 * count)
+        self._plain = np.unpackbits(plain, bitorder="little").tolist()
+        self._plain_at = 0
         self._at = 0
 
-    def take(self, count):
-        """The next bits, the first lowest."""
-        end = self._at + count
-        if end > len(self._bits):
-            raise ValueError("residuals are truncated")
+    def take(self, slots):
+        """The next symbol, by what slots_of made of its frequencies."""
+        state = self._states[self._at]
+        symbol, first, frequency = slots[state & 4095]
+        state = frequency * (state >> 12) + (state & 4095) - first
+        if state < 2**16:
+            if not self._words:
+                raise ValueError("rANS bytes are truncated")
+            state = state << 16 | self._words.pop()
+        self._states[self._at] = state
+        self._at = (self._at + 1) & 3
+        return symbol
+
+    def bits(self, count):
+        """The next plain bits, the first lowest."""
+        end = self._plain_at + count
+        if end > len(self._plain):
+            raise ValueError("rANS bytes are truncated")
         value = 0
-        for bit in reversed(self._bits[self._at : end]):
+        for bit in reversed(self._plain[self._plain_at : end]):
             value = value << 1 | bit
-        self._at = end
+        self._plain_at = end
         return value
 
-    def finished(self):
-        """True if only the filling of the last byte is left."""
-        return len(self._bits) - self._at < 8 and not any(self._bits[self._at :])
+    def finish(self):
+        """Everything must have been used but the filling of the last byte."""
+        left = self._plain[self._plain_at :]
+        if self._words or self._states != [2**16] * 4 or len(left) >= 8 or any(left):
+            raise ValueError("rANS bytes do not end with their section")

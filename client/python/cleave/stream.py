@@ -21,13 +21,14 @@ import zstandard
 
 from cleave.checksums import crc32c, xxh3_64
 from cleave.interpolation import UNITS_PER_STEP, Motion, Predictor
+from cleave.labels import PieceLabels
 from cleave.residuals import ResidualHistory
 
 MAX_QUANTISED = 2**30 - 1
 MAX_TOPOLOGY_EDGES = 262144
 
 KEY, DELTA, HOLD = 1, 2, 3
-_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION = 1, 2, 3, 4
+_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION, _LABELS = 1, 2, 3, 4, 5
 _REST, _LAST, _LINEAR, _INTERPOLATION = 1, 2, 3, 4
 _KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1))  # order, predictor, coder, view
 
@@ -227,7 +228,7 @@ def split_frame(data):
         if checksum != crc32c(data[at : at + 20] + coded):
             raise DamagedError("a section fails its checksum")
         at += 24 + size
-        if kind in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION):
+        if kind in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT, _POSITIONS, _MOTION, _LABELS):
             sections.append(_Section(kind, coder, prediction, raw, first, count, coded))
         elif not kind & 0x8000:
             raise UnsupportedError(f"section type {kind} is not known")
@@ -260,6 +261,7 @@ class FrameDecoder:
             edges = _checked_edges(edges, self.header)
             self._predictor = Predictor(rest, edges)
             self._rest = rest[self._predictor.order.nodes]
+            self._labels = PieceLabels(self._predictor)
         self._history = ResidualHistory(0)
         self._previous = None
         self._quantised = None
@@ -276,7 +278,7 @@ class FrameDecoder:
         """Decodes one whole frame and returns its header."""
         header, sections = split_frame(bytes(data))
         self._check_base(header)
-        topology = [s for s in sections if s.type in (_TOPOLOGY_DELTA, _TOPOLOGY_CHECKPOINT)]
+        topology = [s for s in sections if s.type not in (_POSITIONS, _MOTION)]
         if sections[: len(topology)] != topology:
             raise DamagedError("topology sections stand behind others")
         others = sections[len(topology) :]
@@ -333,6 +335,10 @@ class FrameDecoder:
         expected = _TOPOLOGY_CHECKPOINT if header.kind == KEY else _TOPOLOGY_DELTA
         broken = [] if header.kind == KEY else [self.broken_edges]
         known = sum(len(ids) for ids in broken)
+        if header.kind == KEY and self._predictor is not None and sections:
+            if sections[0].type == _LABELS:
+                broken = [self._decode_labels(sections[0])]
+                sections = sections[1:]
         last = -1
         for section in sections:
             known += section.count
@@ -354,6 +360,18 @@ class FrameDecoder:
         if len(union) != header.broken_edges:
             raise DamagedError("frame does not list the broken edges that it declares")
         return union
+
+    def _decode_labels(self, section):
+        nodes = self.header.nodes
+        if (
+            (section.first, section.prediction, section.count) != (0, 0, nodes)
+            or (section.coder, section.raw_bytes) != (2, nodes)
+        ):
+            raise DamagedError("topology labels do not fit their frame")
+        try:
+            return self._labels.decode(section.coded).astype("<i4")
+        except ValueError as error:
+            raise DamagedError(str(error)) from error
 
     def _decode_positions(self, header, chunks):
         nodes, chunk_nodes = self.header.nodes, self.header.chunk_nodes
@@ -468,7 +486,7 @@ def edges_of(tets):
     """The edges of tets (node ids, 4 a row) as Cleave numbers them: FORMAT.md section 1."""
     tets = np.asarray(tets, "i8").reshape(-1, 4)
     corners = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-    pairs = np.concatenate([tets[:, list(pair)] for pair in corners])
+    pairs = np.concatenate([tets[:, pair] for pair in corners])
     return np.unique(np.sort(pairs, axis=1), axis=0)
 
 

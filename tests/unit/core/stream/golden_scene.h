@@ -15,11 +15,13 @@ struct GoldenStream {
   uint16_t coder_id;
   int nodes;
   size_t broken_edges;  // after the last frame
+  bool crumbles;        // into cells from frame 5 on, which key frames tell by labels
 };
 inline constexpr GoldenStream kGoldenStreams[] = {
-    {"temporal_zstd", 1, 1, 90, 150},
-    {"interpolation_zstd", 2, 1, 200, 1015},
-    {"interpolation_rans", 2, 2, 200, 1015},
+    {"temporal_zstd", 1, 1, 90, 150, false},
+    {"interpolation_zstd", 2, 1, 200, 1015, false},
+    {"interpolation_rans", 2, 2, 200, 1015, false},
+    {"interpolation_labels", 2, 2, 200, 1015, true},
 };
 
 inline constexpr char kGoldenDirectory[] = CLEAVE_SOURCE_DIR "/tests/unit/core/stream/golden/";

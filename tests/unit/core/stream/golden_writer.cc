@@ -83,9 +83,28 @@ GoldenBody LatticeBody() {
   return body;
 }
 
+// The nearest of twelve nodes.
+size_t CellOf(const GoldenBody& body, size_t node) {
+  size_t nearest = 0;
+  double least = 1e9;
+  for (size_t cell = 0; cell < 12; ++cell) {
+    const Vec3& centre = body.rest[cell * 97 % 200];
+    double square = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double d = body.rest[node][axis] - centre[axis];
+      square += d * d;
+    }
+    if (square < least) {
+      least = square;
+      nearest = cell;
+    }
+  }
+  return nearest;
+}
+
 // The body bends; a crack opens across it from frame 4 to 6; from 7 on node 0 is alone, from 8 on
 // the small part rests, and in the last frame of epoch 1 nothing holds together.
-Frame LatticeFrame(const GoldenBody& body, int64_t number, bool shattered) {
+Frame LatticeFrame(const GoldenBody& body, int64_t number, bool shattered, bool crumbles) {
   Frame frame;
   frame.positions = body.rest;
   const auto t = static_cast<double>(number == 3 ? 2 : number);
@@ -107,7 +126,10 @@ Frame LatticeFrame(const GoldenBody& body, int64_t number, bool shattered) {
   for (size_t edge = 0; edge < body.edges.size(); ++edge) {
     const auto& [a, b] = body.edges[edge];
     const bool crack = a < 75 && b >= 75 && a % 25 < 10 * (number - 3);
-    if (shattered || crack || (a == 0 && number >= 7)) {
+    const bool between =
+        crumbles && number >= 5 &&
+        CellOf(body, static_cast<size_t>(a)) != CellOf(body, static_cast<size_t>(b));
+    if (shattered || crack || between || (a == 0 && number >= 7)) {
       frame.broken_edges.push_back(static_cast<int32_t>(edge));
     }
   }
@@ -152,8 +174,8 @@ absl::Status Write(const GoldenStream& golden) {
     if (at == 10) status.Update(encoder->StartEpoch(1));
     if (at == 12) status.Update(encoder->SetTolerance(kGoldenFinerTolerance));
     if (!status.ok()) return status;
-    Frame frame =
-        lattice ? LatticeFrame(body, numbers[at], at == 12) : TemporalFrame(body, numbers[at]);
+    Frame frame = lattice ? LatticeFrame(body, numbers[at], at == 12, golden.crumbles)
+                          : TemporalFrame(body, numbers[at]);
     frame.frame = numbers[at];
     frame.time = static_cast<double>(frame.frame) / 24;
     const auto encoded = encoder->Encode(frame);

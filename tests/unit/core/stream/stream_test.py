@@ -114,6 +114,18 @@ class InterpolationRansTest(GoldenTests, unittest.TestCase):
     NAME = "interpolation_rans"
 
 
+class InterpolationLabelsTest(GoldenTests, unittest.TestCase):
+    NAME = "interpolation_labels"
+
+    def test_some_key_frames_have_labels(self):
+        types = [
+            section.type
+            for row in self.file.rows
+            for section in stream.split_frame(self.file.frame_bytes(row))[1]
+        ]
+        self.assertIn(5, types)
+
+
 class ChecksumsTest(unittest.TestCase):
     def test_crc32c_is_castagnoli_for_every_way_through(self):
         self.assertEqual(checksums.crc32c(b"123456789"), 0xE3069283)

@@ -1,0 +1,205 @@
+#include "core/stream/piece_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "core/base/bytes.h"
+#include "core/stream/rans.h"
+#include "core/stream/residual_model.h"
+
+namespace cleave {
+namespace {
+
+// What a node's label is coded as: the first of the ranked labels, the second, the third, or else
+// by a byte, which is the rank, or kNew for a label that no node has had, or kListed.
+constexpr size_t kSymbols = 4;
+constexpr uint32_t kElse = 3;
+constexpr uint32_t kNew = 254;
+constexpr uint32_t kListed = 255;
+constexpr uint32_t kNone = ~uint32_t{0};
+
+// How sure the first of the ranked labels is: by how many more neighbours have it than the second.
+constexpr size_t kContexts = 8;
+
+using Frequencies = std::array<std::array<uint16_t, kSymbols>, kContexts>;
+
+SymbolRange RangeOf(const std::array<uint16_t, kSymbols>& frequencies, size_t symbol) {
+  uint16_t start = 0;
+  for (size_t s = 0; s < symbol; ++s) start = static_cast<uint16_t>(start + frequencies[s]);
+  return {start, frequencies[symbol]};
+}
+
+}  // namespace
+
+PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
+                         std::span<const std::array<int32_t, 2>> edges) {
+  const size_t count = order.nodes.size();
+  std::vector<int32_t> places(count);
+  stencils_.resize(count);
+  for (size_t place = 0; place < count; ++place) {
+    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
+    stencils_[place] = unbroken[static_cast<int32_t>(place)].places;
+  }
+  edges_.reserve(edges.size());
+  for (const auto& [a, b] : edges) {
+    edges_.push_back({places[static_cast<size_t>(a)], places[static_cast<size_t>(b)]});
+  }
+}
+
+PieceLabels::Ranking PieceLabels::Rank(size_t place, const std::vector<int32_t>& labels) const {
+  Ranking ranking{};
+  std::array<size_t, kStencilNodes> votes{};
+  const std::array<int32_t, kStencilNodes>& stencil = stencils_[place];
+  for (size_t k = 0; k < kStencilNodes && stencil[k] >= 0; ++k) {
+    if (k > 0 && stencil[k] == stencil[0]) break;  // unused ones repeat the first
+    const int32_t label = labels[static_cast<size_t>(stencil[k])];
+    size_t at = 0;
+    while (at < ranking.count && ranking.labels[at] != label) ++at;
+    if (at == ranking.count) ranking.labels[ranking.count++] = label;
+    ++votes[at];
+  }
+  for (size_t end = 1; end < ranking.count; ++end) {
+    for (size_t at = end; at > 0 && votes[at] > votes[at - 1]; --at) {
+      std::swap(votes[at], votes[at - 1]);
+      std::swap(ranking.labels[at], ranking.labels[at - 1]);
+    }
+  }
+  if (ranking.count == 1) {
+    ranking.context = votes[0] < 3 ? 1 : 2;
+  } else if (ranking.count > 1) {
+    ranking.context = 7 - std::min<size_t>(votes[0] - votes[1], 4);
+  }
+  return ranking;
+}
+
+std::string PieceLabels::Encode(std::span<const int32_t> broken) const {
+  // Pieces by joining the ends of every edge that is not broken.
+  const size_t count = stencils_.size();
+  std::vector<int32_t> joined(count);
+  std::iota(joined.begin(), joined.end(), 0);
+  const auto root_of = [&](int32_t at) {
+    while (joined[static_cast<size_t>(at)] != at) {
+      int32_t& above = joined[static_cast<size_t>(at)];
+      above = joined[static_cast<size_t>(above)];
+      at = above;
+    }
+    return at;
+  };
+  auto next_broken = broken.begin();
+  for (size_t edge = 0; edge < edges_.size(); ++edge) {
+    if (next_broken != broken.end() && *next_broken == static_cast<int32_t>(edge)) {
+      ++next_broken;
+      continue;
+    }
+    const int32_t a = root_of(edges_[edge][0]);
+    const int32_t b = root_of(edges_[edge][1]);
+    joined[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  // Labels are counted as places meet them; a piece's root is its first place.
+  struct Choice {
+    size_t context;
+    uint32_t code;  // a rank, kNew or kListed
+  };
+  std::vector<int32_t> labels(count);
+  std::vector<Choice> choices(count);
+  std::array<std::array<uint64_t, kSymbols>, kContexts> counts{};
+  int32_t labels_so_far = 0;
+  for (size_t at = 0; at < count; ++at) {
+    const int32_t root = root_of(static_cast<int32_t>(at));
+    const bool is_new = root == static_cast<int32_t>(at);
+    labels[at] = is_new ? labels_so_far++ : labels[static_cast<size_t>(root)];
+    Choice& choice = choices[at];
+    const Ranking ranking = Rank(at, labels);
+    choice.context = ranking.context;
+    uint32_t rank = 0;
+    while (rank < ranking.count && ranking.labels[rank] != labels[at]) ++rank;
+    choice.code = is_new ? kNew : rank < ranking.count ? rank : kListed;
+    ++counts[choice.context][std::min(choice.code, kElse)];
+  }
+  Frequencies frequencies;
+  std::string coded;
+  ByteWriter head(coded);
+  for (size_t context = 0; context < kContexts; ++context) {
+    ToFrequencies(counts[context].data(), kSymbols, frequencies[context].data());
+    for (const uint16_t frequency : frequencies[context]) head.Put(frequency);
+  }
+  RansWriter writer;
+  for (size_t at = 0; at < count; ++at) {
+    const Choice& choice = choices[at];
+    const uint32_t symbol = std::min(choice.code, kElse);
+    writer.PutSymbol(RangeOf(frequencies[choice.context], symbol));
+    if (symbol < kElse) continue;
+    writer.PutBits(choice.code, 8);
+    if (choice.code < kListed) continue;
+    const auto label = static_cast<uint32_t>(labels[at]);
+    writer.PutBits(label & 0xFFFF, 16);
+    writer.PutBits(label >> 16, 16);
+  }
+  return coded + writer.Finish();
+}
+
+absl::StatusOr<std::vector<int32_t>> PieceLabels::Decode(absl::string_view coded) const {
+  const size_t count = stencils_.size();
+  ByteReader head(coded);
+  Frequencies frequencies;
+  bool fits = true;
+  for (auto& of_context : frequencies) {
+    uint32_t sum = 0;
+    for (uint16_t& frequency : of_context) {
+      frequency = head.Get<uint16_t>();
+      fits &= frequency > 0;
+      sum += frequency;
+    }
+    fits &= sum == kFrequencyOne;
+  }
+  if (!head.ok() || !fits) {
+    return absl::DataLossError("topology labels have frequencies that do not add up");
+  }
+  RansReader reader(head.GetBytes(head.left()));
+  std::vector<int32_t> labels(count);
+  int32_t labels_so_far = 0;
+  for (size_t at = 0; at < count; ++at) {
+    const Ranking ranking = Rank(at, labels);
+    const auto& of_context = frequencies[ranking.context];
+    const uint32_t slot = reader.Slot();
+    uint32_t code = 0;
+    SymbolRange range = RangeOf(of_context, 0);
+    while (slot >= uint32_t{range.start} + range.frequency) range = RangeOf(of_context, ++code);
+    reader.Take(range);
+    if (code == kElse) code = reader.Bits(8);
+    if (code == kNew) {
+      labels[at] = labels_so_far++;
+      continue;
+    }
+    uint32_t label = kNone;
+    if (code == kListed) {
+      label = reader.Bits(16);
+      label |= reader.Bits(16) << 16;
+    } else if (code < ranking.count) {
+      label = static_cast<uint32_t>(ranking.labels[code]);
+    }
+    if (label >= static_cast<uint32_t>(labels_so_far)) {
+      return absl::DataLossError("topology labels name a label that is not there");
+    }
+    labels[at] = static_cast<int32_t>(label);
+  }
+  if (!reader.Finish()) return absl::DataLossError("topology labels do not end with their section");
+  return Between(labels);
+}
+
+std::vector<int32_t> PieceLabels::Between(const std::vector<int32_t>& labels) const {
+  std::vector<int32_t> between;
+  for (size_t edge = 0; edge < edges_.size(); ++edge) {
+    if (labels[static_cast<size_t>(edges_[edge][0])] !=
+        labels[static_cast<size_t>(edges_[edge][1])]) {
+      between.push_back(static_cast<int32_t>(edge));
+    }
+  }
+  return between;
+}
+
+}  // namespace cleave
