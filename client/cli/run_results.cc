@@ -16,6 +16,7 @@
 #include "client/io/scene/scene_file.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
+#include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
 #include "proto/convert/scene.h"
 
@@ -64,7 +65,8 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   RecordedRun run;
   CLEAVE_ASSIGN_OR_RETURN(run.mesh, ReadAnyMesh(mesh_file, unit_scale));
   CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(run.mesh).ToStatus());
-  CLEAVE_ASSIGN_OR_RETURN(run.recording, OpenRecording(frames, run.mesh.rest_positions));
+  const auto edges = BuildIncidence(run.mesh).edges;
+  CLEAVE_ASSIGN_OR_RETURN(run.recording, OpenRecording(frames, {run.mesh.rest_positions, edges}));
   if (run.recording.frames.count == 0)
     return absl::FailedPreconditionError(absl::StrCat(frames, ": holds no frames yet"));
   return run;

@@ -87,7 +87,8 @@ absl::Status FrameStream::Connect() {
   if (!start_.has_value()) {
     CLEAVE_RETURN_IF_ERROR(ParseStreamHeader(response.start().header()).status());
     if (options_.rest_positions.has_value()) {
-      auto decoder = FrameDecoder::Create(response.start().header(), *options_.rest_positions);
+      auto decoder = FrameDecoder::Create(response.start().header(),
+                                          {*options_.rest_positions, options_.edges});
       if (!decoder.ok()) return decoder.status();
       decoder_.emplace(*std::move(decoder));
     }

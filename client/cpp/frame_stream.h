@@ -4,6 +4,7 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/support/sync_stream.h>
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -37,8 +38,10 @@ struct FrameStreamOptions {
   int64_t first_frame = 0;
   std::optional<int64_t> stop_frame;  // last frame wanted; absent: until the run's goal
   bool follow = false;                // stay when the goal is reached, until Cancel
-  // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder().
+  // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder(). With them
+  // its edges (Incidence::edges).
   std::optional<std::vector<Vec3>> rest_positions;
+  std::vector<std::array<int32_t, 2>> edges;
   // Told whenever the stream was cut and is tried again after `delay`. May be empty.
   std::function<void(const absl::Status& why, std::chrono::milliseconds delay)> on_cut;
 };

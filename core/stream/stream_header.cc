@@ -120,6 +120,21 @@ std::string RestPositionsSha256(std::span<const Vec3> rest_positions) {
                                       rest_positions.size_bytes()));
 }
 
+void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameters) {
+  const absl::StatusOr<StreamHeader> header = MakeStreamHeader(parameters, rest_positions);
+  if (!header.ok()) return;  // for its maker to report
+  double diagonal = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    diagonal = std::hypot(diagonal, header->bbox_max[axis] - header->bbox_min[axis]);
+  }
+  StreamHeader finer = *header;
+  finer.predictor_id = kPredictorInterpolation;
+  const double reach = finer.UnitOf(finer.tolerance) * kMaxQuantised;
+  const bool reaches = reach >= 256 * diagonal && CheckTolerance(finer.tolerance, finer).ok();
+  parameters.predictor_id = reaches ? kPredictorInterpolation : kPredictorTemporal;
+  parameters.coder_id = reaches ? kCoderContextRans : kCoderZstdPlanes;
+}
+
 absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters,
                                               std::span<const Vec3> rest_positions) {
   StreamHeader header;

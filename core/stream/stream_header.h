@@ -68,6 +68,11 @@ struct StreamParameters {
   uint16_t coder_id = kCoderZstdPlanes;
 };
 
+// Sets the ids that code a body with these rest positions (m) best at the parameters' tolerance:
+// predictor 2 and coder 2 where their grid reaches 256 of its diagonals, else predictor 1, whose
+// grid is coarser.
+void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameters);
+
 // Fills a header for a body with these rest positions (m), choosing the origin (centre of the
 // bounding box) and the domain bound: |decoded - x| <= tolerance always holds for the decoder's
 // doubles, and where |x| <= domain_bound also after they are rounded to float32. The bound is 32

@@ -19,12 +19,22 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
   const Scene& scene = inputs.scene;
   StreamParameters parameters;
   parameters.mesh_sha256 = inputs.mesh_sha256;
-  parameters.edge_count = static_cast<uint64_t>(BuildIncidence(inputs.mesh).edge_count());
+  recorded->edges_ = BuildIncidence(inputs.mesh).edges;
+  parameters.edge_count = recorded->edges_.size();
   parameters.tet_count = static_cast<uint64_t>(inputs.mesh.tet_count());
   parameters.tolerance = scene.output.tolerance.value_or(0);
   parameters.keyframe_interval = static_cast<uint32_t>(scene.output.keyframe_interval);
   parameters.frames_per_second = scene.timing.frames_per_second;
   recorded->rest_positions_ = inputs.mesh.rest_positions;
+  if (recorded->head() >= 0) {
+    // A log goes on as it was begun, whatever this build would choose.
+    CLEAVE_ASSIGN_OR_RETURN(const StreamHeader begun,
+                            ParseStreamHeader(recorded->log_.header_bytes()));
+    parameters.predictor_id = begun.predictor_id;
+    parameters.coder_id = begun.coder_id;
+  } else {
+    ChooseIds(recorded->rest_positions_, parameters);
+  }
   CLEAVE_ASSIGN_OR_RETURN(recorded->header_,
                           MakeStreamHeader(parameters, recorded->rest_positions_));
   recorded->checkpoint_interval_ = scene.output.checkpoint_interval;
@@ -38,7 +48,7 @@ absl::Status RecordedSimulation::Begin() {
     CLEAVE_RETURN_IF_ERROR(RestoreNewestCheckpoint());
     return RestoreEncoder();
   }
-  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, rest_positions_));
+  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh()));
   CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
   return log_.Append(encoder_->header_bytes(), encoded);
 }
@@ -65,14 +75,12 @@ absl::Status RecordedSimulation::RestoreEncoder() {
   if (!key.has_value()) {
     return absl::DataLossError(absl::StrCat("the frame log has no key frame before ", frame()));
   }
-  CLEAVE_ASSIGN_OR_RETURN(FrameDecoder decoder,
-                          FrameDecoder::Create(log_.header_bytes(), rest_positions_));
+  CLEAVE_ASSIGN_OR_RETURN(FrameDecoder decoder, FrameDecoder::Create(log_.header_bytes(), mesh()));
   for (size_t i = *key; i <= *position; ++i) {
     CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, log_.ReadFrame(rows[i]));
     CLEAVE_RETURN_IF_ERROR(decoder.Apply(bytes));
   }
-  CLEAVE_ASSIGN_OR_RETURN(encoder_,
-                          FrameEncoder::Create(header_, rest_positions_, decoder.state()));
+  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh(), decoder.state()));
   if (encoder_->header_bytes() != log_.header_bytes()) {
     return absl::FailedPreconditionError("the frame log was written for another stream header");
   }

@@ -1,6 +1,7 @@
 #ifndef CLEAVE_SERVER_WORKER_RECORDED_SIMULATION_H_
 #define CLEAVE_SERVER_WORKER_RECORDED_SIMULATION_H_
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -58,11 +59,13 @@ class RecordedSimulation {
   absl::Status RestoreNewestCheckpoint();
   absl::Status RestoreEncoder();
   Frame CurrentFrame() const;
+  StreamMesh mesh() const { return {rest_positions_, edges_}; }
 
   Checkpoints checkpoints_;
   FrameLogWriter log_;
   Reports reports_;
   std::vector<Vec3> rest_positions_;
+  std::vector<std::array<int32_t, 2>> edges_;  // of the mesh, as frames number them
   StreamHeader header_;
   int64_t checkpoint_interval_ = 1;
   int64_t newest_checkpoint_ = -1;

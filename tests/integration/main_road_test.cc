@@ -13,6 +13,7 @@
 #include "client/io/record/recorder.h"
 #include "client/io/record/recording.h"
 #include "client/io/scene/scene_file.h"
+#include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/scene/validate.h"
 #include "proto/convert/mesh.h"
@@ -73,6 +74,8 @@ TEST(MainRoadTest, AMeshFileBecomesAStreamOfItsBreakAndAFilmOfIt) {
   FrameStreamOptions options;
   options.session = "sessions/bar";
   options.rest_positions = mesh->rest_positions;
+  const auto edges = BuildIncidence(*mesh).edges;
+  options.edges = edges;
   FrameStream stream(*client, options);
   absl::StatusOr<std::unique_ptr<Recorder>> recorder = Recorder::Open(out / "bar.clv");
   ASSERT_TRUE(recorder.ok());
@@ -98,7 +101,8 @@ TEST(MainRoadTest, AMeshFileBecomesAStreamOfItsBreakAndAFilmOfIt) {
   EXPECT_THAT(reports, HasSubstr("\"in_force\":{\"precision\":\"double\""));
 
   // Show: a series that ParaView opens.
-  const absl::StatusOr<Recording> recording = OpenRecording(out / "bar.clv", mesh->rest_positions);
+  const absl::StatusOr<Recording> recording =
+      OpenRecording(out / "bar.clv", {mesh->rest_positions, edges});
   ASSERT_TRUE(recording.ok()) << recording.status();
   EXPECT_EQ(recording->frames.count, last.frame + 1);
   ExportOptions export_options;

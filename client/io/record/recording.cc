@@ -26,12 +26,11 @@ absl::Status Named(const std::string& path, const absl::Status& status) {
 
 }  // namespace
 
-absl::StatusOr<Recording> OpenRecording(const std::string& path,
-                                        std::span<const Vec3> rest_positions) {
+absl::StatusOr<Recording> OpenRecording(const std::string& path, const StreamMesh& mesh) {
   CLEAVE_ASSIGN_OR_RETURN(std::unique_ptr<FileAccess> file, FileAccess::Open(path));
   auto reader = StreamFileReader::Open(*file);
   if (!reader.ok()) return Named(path, reader.status());
-  auto decoder = FrameDecoder::Create(reader->header_bytes(), rest_positions);
+  auto decoder = FrameDecoder::Create(reader->header_bytes(), mesh);
   if (!decoder.ok()) return Named(path, decoder.status());
   std::map<int64_t, size_t> newest;  // later rows of a number are of later epochs
   for (size_t i = 0; i < reader->rows().size(); ++i) newest[reader->rows()[i].frame] = i;

@@ -2,15 +2,14 @@
 #define CLEAVE_CLIENT_IO_RECORD_RECORDING_H_
 
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/io/series/frame_source.h"
-#include "core/base/vec3.h"
 #include "core/stream/frame_log.h"
 #include "core/stream/stream_header.h"
+#include "core/stream/stream_mesh.h"
 
 namespace cleave {
 
@@ -21,10 +20,9 @@ struct Recording {
   FrameSource frames;          // keeps the file open for as long as it is held
 };
 
-// Opens a .clv whose mesh rests at `rest_positions` (m). Where a session was rewound, a frame is
-// given as it was last. Errors: those of FileAccess, StreamFileReader and FrameDecoder::Create.
-absl::StatusOr<Recording> OpenRecording(const std::string& path,
-                                        std::span<const Vec3> rest_positions);
+// Opens a .clv of this mesh. Where a session was rewound, a frame is given as it was last. Errors:
+// those of FileAccess, StreamFileReader and FrameDecoder::Create.
+absl::StatusOr<Recording> OpenRecording(const std::string& path, const StreamMesh& mesh);
 
 }  // namespace cleave
 

@@ -21,7 +21,7 @@ import zstandard
 from google.protobuf import json_format, text_format
 
 from cleave.checksums import crc32c
-from cleave.stream import FrameDecoder, split_frame
+from cleave.stream import FrameDecoder, edges_of, split_frame
 
 try:
     from cleave.v1 import (
@@ -139,9 +139,7 @@ class Mesh:
 
     def edges(self):
         """Node pairs, sorted: row numbers are the edge ids of broken_edges."""
-        corners = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
-        pairs = np.concatenate([self.tets[:, pair] for pair in corners])
-        return np.unique(np.sort(pairs, axis=1), axis=0)
+        return edges_of(self.tets)
 
 
 def load_scene(path):
@@ -460,7 +458,7 @@ class Session:
         Goes on after cuts of the connection. `mesh` spares fetching it. Raises SimulationFailed
         after the last frame of a run that failed.
         """
-        rest = (mesh or self.mesh()).positions
+        mesh = mesh or self.mesh()
         decoder = None
         attempt = 0
         while True:
@@ -478,7 +476,9 @@ class Session:
                 for message in stream:
                     event = message.WhichOneof("event")
                     if event == "start" and decoder is None:
-                        decoder = FrameDecoder(message.start.header, rest)
+                        decoder = FrameDecoder(
+                            message.start.header, mesh.positions, mesh.edges()
+                        )
                     elif event == "chunk":
                         data += message.chunk.payload
                         if len(data) < message.chunk.frame_bytes:

@@ -93,9 +93,11 @@ absl::Status Measure(const TetMesh& mesh, int threads, const Phase& phase) {
   parameters.mesh_sha256 = std::string(32, '\0');
   parameters.edge_count = static_cast<uint64_t>(incidence.edge_count());
   parameters.tet_count = static_cast<uint64_t>(mesh.tet_count());
+  ChooseIds(mesh.rest_positions, parameters);
   CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header,
                           MakeStreamHeader(parameters, mesh.rest_positions));
-  CLEAVE_ASSIGN_OR_RETURN(FrameEncoder encoder, FrameEncoder::Create(header, mesh.rest_positions));
+  CLEAVE_ASSIGN_OR_RETURN(FrameEncoder encoder,
+                          FrameEncoder::Create(header, {mesh.rest_positions, incidence.edges}));
 
   FrameReport sum;
   double surface_seconds = 0, encode_seconds = 0;

@@ -1,83 +1,232 @@
+// Prints sizes and speeds of the frame stream beside other ways to store the same frames, and what
+// a frame with fracture costs. Asserts nothing. Speeds are of one thread, by its own clock, as
+// float32 positions. `core_stream_bench [bar | noisy | large | simulated | fracture] ...`; without
+// names all but large.
+
 #include <tbb/task_arena.h>
 
+#include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/stopwatch.h"
 #include "core/stream/frame_decoder.h"
 #include "core/stream/frame_encoder.h"
 #include "tests/bench/stream/break_motion.h"
-using namespace cleave;
-int main(int argc, char** argv) {
-  int across = argc > 1 ? atoi(argv[1]) : 16;
-  int threads = argc > 2 ? atoi(argv[2]) : 1;
-  Stopwatch w0;
-  const BreakingBar bar = MakeBreakingBar(across);
-  printf("mesh %.2f s nodes %zu edges %zu\n", w0.Seconds(), bar.pieces.size(),
-         bar.incidence.edges.size());
-  StreamMesh mesh(bar.mesh.rest_positions, bar.incidence.edges);
-  for (double share : {1e-4, 1e-5}) {
-    tbb::task_arena(threads).execute([&] {
-      StreamParameters pr{.mesh_sha256 = std::string(32, 'm'),
-                          .edge_count = bar.incidence.edges.size(),
-                          .tet_count = 1,
-                          .tolerance = share * 4.24,
-                          .predictor_id = 2,
-                          .coder_id = (uint16_t)(argc > 3 ? atoi(argv[3]) : 1)};
-      auto header = MakeStreamHeader(pr, bar.mesh.rest_positions);
-      Stopwatch w1;
-      auto enc = FrameEncoder::Create(*header, mesh);
-      if (!enc.ok()) {
-        printf("%s\n", enc.status().ToString().c_str());
-        return;
+#include "tests/bench/stream/other_codecs.h"
+#include "tests/bench/stream/simulated_frames.h"
+
+namespace cleave {
+namespace {
+
+constexpr int64_t kFrames = 96;
+
+double ThreadSeconds() {
+  timespec time;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Frames to measure on.
+struct Sequence {
+  std::string name;
+  const TetMesh* mesh;
+  const Incidence* incidence;
+  int64_t frames;
+  std::function<void(int64_t, Frame&)> get;
+};
+
+double Diagonal(const TetMesh& mesh) {
+  Vec3 low = mesh.rest_positions.front();
+  Vec3 high = low;
+  for (const Vec3& x : mesh.rest_positions) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], x[axis]);
+      high[axis] = std::max(high[axis], x[axis]);
+    }
+  }
+  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+}
+
+struct Cost {
+  double bytes = 0;
+  double encode_seconds = 0;
+  double decode_seconds = 0;
+  int64_t frames = 0;
+
+  void Print(const char* name, double nodes) const {
+    const double megabytes = 12e-6 * nodes * static_cast<double>(frames);
+    std::printf("    %-34s %8.3f B/v %8.0f MB/s %8.0f MB/s\n", name,
+                bytes / nodes / static_cast<double>(frames), megabytes / encode_seconds,
+                megabytes / decode_seconds);
+  }
+};
+
+StreamParameters ParametersOf(const Sequence& sequence, double tolerance, uint16_t predictor,
+                              uint16_t coder) {
+  StreamParameters parameters;
+  parameters.mesh_sha256 = std::string(32, 'm');
+  parameters.edge_count = sequence.incidence->edges.size();
+  parameters.tet_count = sequence.mesh->tets.size();
+  parameters.tolerance = tolerance;
+  parameters.predictor_id = predictor;
+  parameters.coder_id = coder;
+  return parameters;
+}
+
+// The frame stream itself, all frames; then its phases.
+void MeasureStream(const Sequence& sequence, double tolerance, uint16_t predictor, uint16_t coder,
+                   const char* name) {
+  const StreamMesh mesh(sequence.mesh->rest_positions, sequence.incidence->edges);
+  const auto header =
+      MakeStreamHeader(ParametersOf(sequence, tolerance, predictor, coder), mesh.rest_positions);
+  auto encoder = FrameEncoder::Create(*header, mesh);
+  auto decoder = FrameDecoder::Create(encoder->header_bytes(), mesh);
+  Cost all;
+  Cost keys, breaking, others;
+  double worst = 0;
+  size_t broken = 0;
+  Frame frame;
+  for (int64_t number = 0; number < sequence.frames; ++number) {
+    sequence.get(number, frame);
+    const double start = ThreadSeconds();
+    const auto encoded = encoder->Encode(frame);
+    const double between = ThreadSeconds();
+    const absl::Status applied = encoded.ok() ? decoder->Apply(encoded->bytes) : encoded.status();
+    const double end = ThreadSeconds();
+    if (!applied.ok()) {
+      std::printf("%s\n", applied.ToString().c_str());
+      return;
+    }
+    const bool breaks = frame.broken_edges.size() != broken;
+    broken = frame.broken_edges.size();
+    Cost& phase = encoded->header.kind == FrameKind::kKey ? keys : breaks ? breaking : others;
+    for (Cost* cost : {&all, &phase}) {
+      cost->bytes += static_cast<double>(encoded->bytes.size());
+      cost->encode_seconds += between - start;
+      cost->decode_seconds += end - between;
+      ++cost->frames;
+    }
+    for (size_t node = 0; node < frame.positions.size(); ++node) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        worst = std::max(
+            worst, std::abs(frame.positions[node][axis] - decoder->frame().positions[node][axis]));
       }
-      printf("setup %.3f s\n", w1.Seconds());
-      auto dec = FrameDecoder::Create(enc->header_bytes(), mesh);
-      Frame f;
-      double te[4] = {}, td[4] = {};
-      size_t by[4] = {};
-      int n[4] = {};
-      double worst = 0;
-      size_t brk = 0;
-      for (int64_t i = 0; i < 96; ++i) {
-        MoveBar(bar, i, 0, f);
-        Stopwatch a;
-        auto e = enc->Encode(f);
-        double s = a.Seconds();
-        if (!e.ok()) {
-          printf("%s\n", e.status().ToString().c_str());
-          return;
-        }
-        int k = e->header.kind == FrameKind::kKey ? 0
-                : i < 32                          ? 1
-                : f.broken_edges.size() != brk    ? 2
-                                                  : 3;
-        if (k == 2 && across > 30)
-          printf("  fracture frame %ld: %zu new, enc %.1f ms\n", (long)i,
-                 f.broken_edges.size() - brk, 1e3 * s);
-        brk = f.broken_edges.size();
-        Stopwatch b;
-        auto st = dec->Apply(e->bytes);
-        double s2 = b.Seconds();
-        if (!st.ok()) {
-          printf("%ld %s\n", (long)i, st.ToString().c_str());
-          return;
-        }
-        te[k] += s;
-        td[k] += s2;
-        by[k] += e->bytes.size();
-        n[k]++;
-        for (size_t v = 0; v < f.positions.size(); ++v)
-          for (int c = 0; c < 3; ++c)
-            worst = std::max(worst, std::abs(f.positions[v][c] - dec->frame().positions[v][c]));
-      }
-      const char* nm[] = {"key", "smooth", "break", "after"};
-      for (int k = 0; k < 4; ++k)
-        printf("%g %s: %.3f B/v  enc %.0f MB/s dec %.0f MB/s\n", share, nm[k],
-               by[k] / (double)n[k] / bar.pieces.size(), 12e-6 * bar.pieces.size() * n[k] / te[k],
-               12e-6 * bar.pieces.size() * n[k] / td[k]);
-      printf("worst / tol %.5f\n", worst / header->tolerance);
+    }
+  }
+  const auto nodes = static_cast<double>(sequence.mesh->rest_positions.size());
+  all.Print(name, nodes);
+  if (predictor == kPredictorInterpolation && coder == kCoderContextRans) {
+    keys.Print("  its key frames", nodes);
+    if (breaking.frames > 0) breaking.Print("  its frames with fracture", nodes);
+    others.Print("  its other frames", nodes);
+    std::printf("    worst error %.5f of the tolerance\n", worst / tolerance);
+  }
+}
+
+void MeasureOther(const Sequence& sequence, double tolerance, OtherCodec& codec) {
+  Cost cost;
+  Frame frame;
+  std::vector<float> positions;
+  for (int64_t number = 0; number < sequence.frames; ++number) {
+    sequence.get(number, frame);
+    positions.clear();
+    for (const Vec3& x : frame.positions) {
+      for (const double value : x) positions.push_back(static_cast<float>(value));
+    }
+    const double start = ThreadSeconds();
+    const std::string coded = codec.Encode(positions, tolerance);
+    const double between = ThreadSeconds();
+    codec.Decode(coded);
+    cost.decode_seconds += ThreadSeconds() - between;
+    cost.encode_seconds += between - start;
+    cost.bytes += static_cast<double>(coded.size());
+    ++cost.frames;
+  }
+  cost.Print(codec.name(), static_cast<double>(sequence.mesh->rest_positions.size()));
+}
+
+void Compare(const Sequence& sequence) {
+  std::printf("%s: %zu nodes, %zu edges, %lld frames\n", sequence.name.c_str(),
+              sequence.mesh->rest_positions.size(), sequence.incidence->edges.size(),
+              static_cast<long long>(sequence.frames));
+  for (const double share : {1e-4, 1e-5}) {
+    const double tolerance = share * Diagonal(*sequence.mesh);
+    std::printf("  tolerance %.0e of the diagonal %15s %13s %13s\n", share, "", "encode", "decode");
+    for (const std::unique_ptr<OtherCodec>& codec : MakeOtherCodecs()) {
+      MeasureOther(sequence, tolerance, *codec);
+    }
+    MeasureStream(sequence, tolerance, kPredictorTemporal, kCoderZstdPlanes, "stream, predictor 1");
+    MeasureStream(sequence, tolerance, kPredictorInterpolation, kCoderZstdPlanes,
+                  "stream, predictor 2, zstd");
+    MeasureStream(sequence, tolerance, kPredictorInterpolation, kCoderContextRans,
+                  "stream, predictor 2, rANS");
+    std::fflush(stdout);
+  }
+}
+
+void CompareBar(const char* name, int cells, double noise) {
+  const BreakingBar bar = MakeBreakingBar(cells);
+  const double noise_metres = noise * 1e-4 * Diagonal(bar.mesh);
+  Compare({name, &bar.mesh, &bar.incidence, kFrames,
+           [&](int64_t number, Frame& frame) { MoveBar(bar, number, noise_metres, frame); }});
+}
+
+void CompareSimulated() {
+  const SimulatedFrames simulated = SimulateBreakingBar();
+  Compare({"simulated bar, pulled until it breaks", &simulated.mesh, &simulated.incidence,
+           static_cast<int64_t>(simulated.frames.size()), [&](int64_t number, Frame& frame) {
+             frame = simulated.frames[static_cast<size_t>(number)];
+           }});
+}
+
+// What each breaking frame adds: stencils and pieces, by the wall clock.
+void MeasureFracture(int cells, int threads) {
+  const BreakingBar bar = MakeBreakingBar(cells);
+  tbb::task_arena(threads).execute([&] {
+    const NodeOrder order = MakeNodeOrder(bar.mesh.rest_positions);
+    std::vector<Vec3> by_place;
+    for (const int32_t node : order.nodes) {
+      by_place.push_back(bar.mesh.rest_positions[static_cast<size_t>(node)]);
+    }
+    const Stopwatch setup;
+    Stencils stencils(order, by_place, bar.incidence.edges);
+    std::printf("fracture: %zu nodes, %d threads; stencils at first %.0f ms\n", by_place.size(),
+                threads, 1e3 * setup.Seconds());
+    size_t broken = 0;
+    Frame frame;
+    for (int64_t number = BreakingBar::kFirstBreak; number <= BreakingBar::kLastBreak; ++number) {
+      MoveBar(bar, number, 0, frame);
+      const Stopwatch watch;
+      const size_t touched = stencils.SetBroken(order, frame.broken_edges).size();
+      std::printf("  frame %2lld: %6zu edges break, %6zu stencils, %4d pieces, %6.2f ms\n",
+                  static_cast<long long>(number), frame.broken_edges.size() - broken, touched,
+                  stencils.pieces().count(), 1e3 * watch.Seconds());
+      broken = frame.broken_edges.size();
+    }
+  });
+}
+
+}  // namespace
+}  // namespace cleave
+
+int main(int count, char** arguments) {
+  std::vector<std::string> names(arguments + 1, arguments + count);
+  if (names.empty()) names = {"bar", "noisy", "simulated", "fracture"};
+  for (const std::string& name : names) {
+    tbb::task_arena(1).execute([&] {
+      if (name == "bar") cleave::CompareBar("bar by formulas", 16, 0);
+      if (name == "noisy") cleave::CompareBar("bar by formulas, noise of 0.5e-4 D", 16, 0.5);
+      if (name == "large") cleave::CompareBar("large bar by formulas", 36, 0);
+      if (name == "simulated") cleave::CompareSimulated();
     });
+    if (name == "fracture") {
+      cleave::MeasureFracture(36, 1);
+      cleave::MeasureFracture(36, 2);
+    }
   }
 }
