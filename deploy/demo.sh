@@ -10,7 +10,7 @@ out=$PWD/out
 bin=build/release
 
 ./deploy/install.sh
-cmake --preset release >/dev/null
+cmake --preset release -DCLEAVE_PRECOMPILE=ON >/dev/null
 cmake --build --preset release --target cleave cleaved cleave-worker
 
 rm -rf "$out"

@@ -5,7 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 ./deploy/install.sh
 
-cmake --preset release >/dev/null
+# Precompiled headers take a third off a build from scratch; the second build does without, so that a
+# file which lacks an include is found.
+cmake --preset release -DCLEAVE_PRECOMPILE=ON >/dev/null
 cmake --build --preset release
 ctest --preset release --no-tests=error -j "$(nproc)"
 
