@@ -127,8 +127,9 @@ class Numbers {
   bool NextBinary(const Number& number, double& value) {
     if (rest_.size() < number.bytes) return false;
     unsigned char raw[8] = {};
-    std::memcpy(raw, rest_.data(), number.bytes);
-    if (coding_ == Coding::kBig) std::reverse(raw, raw + number.bytes);
+    for (size_t k = 0; k < std::min(number.bytes, sizeof raw); ++k)
+      raw[k] =
+          static_cast<unsigned char>(rest_[coding_ == Coding::kBig ? number.bytes - 1 - k : k]);
     rest_.remove_prefix(number.bytes);
     if (number.floating && number.bytes == 4) {
       float single = 0;
