@@ -41,6 +41,7 @@ TEST(FullSlabTrio, EachBodyBreaksItsOwnWay) {
       const Metrics aniso = MustMeasure("slab_trio", setting, "aniso");
       const Metrics impure = MustMeasure("slab_trio", setting, "impure");
       const Metrics shuffled = MustMeasure("slab_trio", setting, "shuffled");
+      ASSERT_FALSE(iso.empty() || aniso.empty() || impure.empty() || shuffled.empty());
       Report("slab_trio iso", setting, iso);
       Report("slab_trio aniso", setting, aniso);
       Report("slab_trio impure", setting, impure);
