@@ -40,8 +40,8 @@ Norms NormsOf(const Vec3& p, const Vec3& size, double exponent, size_t axes) {
   return norms;
 }
 
-// Tets that a rounded-off edge of the box flattened are left out: what was a sharp edge is part of a
-// smooth side, on which they have no room.
+// Tets that a rounded-off edge of the box flattened are left out: what was a sharp edge is part of
+// a smooth side, on which they have no room.
 void LeaveOutFlatTets(TetMesh& mesh, double cell_size) {
   const double least = 0.01 * cell_size * cell_size * cell_size;
   std::vector<std::array<int32_t, 4>> kept;
@@ -104,11 +104,14 @@ absl::StatusOr<TetMesh> Branch(const BranchShape& shape, const MeshResolution& r
     double scale = 1 + (shape.tip_radius / shape.foot_radius - 1) * along;
     const double bark = scale * shape.foot_radius;
     const double angle = std::atan2(p[1], p[0]);
+    // Stubs grow from the bark: at the axis, where all angles meet, they would fold the mesh.
+    const double out = std::hypot(p[0], p[1]) / shape.foot_radius;
+    const double height = shape.stub_height / shape.foot_radius * out * out;
     for (const Stub& stub : kStubs) {
       const double around = std::remainder(angle - stub.angle, 2 * std::numbers::pi) * bark;
       const double away = (along - stub.place) * shape.length;
       const double reach = std::hypot(around, away) / width;
-      scale += shape.stub_height / shape.foot_radius * (1 - SmoothStep(0.3, 1, reach));
+      scale += height * (1 - SmoothStep(0.3, 1, reach));
     }
     p[0] *= scale;
     p[1] *= scale;
