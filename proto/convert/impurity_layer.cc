@@ -1,18 +1,15 @@
 #include "proto/convert/impurity_layer.h"
 
-#include <algorithm>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "proto/convert/field_reader.h"
 
 namespace cleave {
 namespace {
 
-using Numbers = google::protobuf::RepeatedField<double>;
-
 class LayerReader {
  public:
-  LayerReader(std::string field, Faults& faults) : field_(std::move(field)), faults_(faults) {}
+  LayerReader(std::string field, const FieldReader& read) : field_(std::move(field)), read_(read) {}
 
   ImpuritySource Source(const v1::ImpurityLayer& message) {
     switch (message.source_case()) {
@@ -20,9 +17,9 @@ class LayerReader {
         return NodeValues{Values(message.node_values().shares()), message.node_values().file(),
                           message.node_values().array()};
       case v1::ImpurityLayer::kNoise:
-        return NoiseField{
-            Choice<NoiseDistribution>("noise.distribution", message.noise().distribution(), 2),
-            message.noise().correlation_length()};
+        return NoiseField{read_.AfterUnspecified<NoiseDistribution>(
+                              At("noise.distribution"), message.noise().distribution(), 2),
+                          message.noise().correlation_length()};
       case v1::ImpurityLayer::kBands:
         return Bands(message.bands());
       case v1::ImpurityLayer::kPockets:
@@ -39,16 +36,6 @@ class LayerReader {
     return std::monostate{};
   }
 
-  // The enum after "unspecified", which stands for its first value.
-  template <typename Enum>
-  Enum Choice(absl::string_view name, int value, int count) {
-    if (value < 0 || value > count) {
-      faults_.Error(At(name), absl::StrCat(value, " is outside [0, ", count, "]"));
-      return Enum{};
-    }
-    return static_cast<Enum>(std::max(value, 1) - 1);
-  }
-
  private:
   std::string At(absl::string_view name) const { return absl::StrCat(field_, ".", name); }
 
@@ -56,35 +43,11 @@ class LayerReader {
     return {numbers.begin(), numbers.end()};
   }
 
-  Vec3 Vector(absl::string_view name, const Numbers& numbers, const Vec3& if_empty) {
-    if (numbers.empty()) return if_empty;
-    if (numbers.size() != 3) {
-      faults_.Error(At(name), absl::StrCat("has ", numbers.size(), " numbers; three are required"));
-      return if_empty;
-    }
-    return {numbers[0], numbers[1], numbers[2]};
-  }
-
-  // Groups of kSize numbers.
-  template <size_t kSize, typename Number>
-  std::vector<std::array<Number, kSize>> Groups(
-      const std::string& name, const google::protobuf::RepeatedField<Number>& numbers) {
-    const auto count = static_cast<size_t>(numbers.size());
-    if (count % kSize != 0) {
-      faults_.Error(At(name),
-                    absl::StrCat("has ", count, " numbers; a multiple of ", kSize, " is required"));
-      return {};
-    }
-    std::vector<std::array<Number, kSize>> groups(count / kSize);
-    for (size_t k = 0; k < count; ++k) groups[k / kSize][k % kSize] = numbers[static_cast<int>(k)];
-    return groups;
-  }
-
   BandField Bands(const v1::BandField& message) {
     BandField bands;
-    bands.shape = Choice<BandShape>("bands.shape", message.shape(), 3);
-    bands.center = Vector("bands.center", message.center(), bands.center);
-    bands.axis = Vector("bands.axis", message.axis(), bands.axis);
+    bands.shape = read_.AfterUnspecified<BandShape>(At("bands.shape"), message.shape(), 3);
+    bands.center = read_.Vector(At("bands.center"), message.center(), bands.center);
+    bands.axis = read_.Vector(At("bands.axis"), message.axis(), bands.axis);
     bands.position = message.position();
     bands.width = message.width();
     if (message.has_spacing()) bands.spacing = message.spacing();
@@ -94,10 +57,11 @@ class LayerReader {
   Strokes StrokesOf(const v1::Strokes& message) {
     Strokes strokes;
     for (int c = 0; c < message.curves_size(); ++c) {
-      strokes.curves.push_back(
-          {Groups<3>(absl::StrCat("strokes.curves[", c, "].points"), message.curves(c).points())});
+      strokes.curves.push_back({read_.Groups<3>(At(absl::StrCat("strokes.curves[", c, "].points")),
+                                                message.curves(c).points())});
     }
-    strokes.direction = Vector("strokes.direction", message.direction(), strokes.direction);
+    strokes.direction =
+        read_.Vector(At("strokes.direction"), message.direction(), strokes.direction);
     if (message.has_depth()) strokes.depth = message.depth();
     strokes.radius = message.radius();
     return strokes;
@@ -106,9 +70,9 @@ class LayerReader {
   SegmentPattern Pattern(const v1::SegmentPattern& message) {
     SegmentPattern pattern;
     for (int c = 0; c < message.curves_size(); ++c) {
-      pattern.curves.push_back(
-          {Groups<2>(absl::StrCat("pattern.curves[", c, "].points"), message.curves(c).points()),
-           Values(message.curves(c).half_widths())});
+      pattern.curves.push_back({read_.Groups<2>(At(absl::StrCat("pattern.curves[", c, "].points")),
+                                                message.curves(c).points()),
+                                Values(message.curves(c).half_widths())});
     }
     if (message.has_image()) {
       ImageDrawing& image = pattern.image.emplace();
@@ -118,9 +82,10 @@ class LayerReader {
       image.keep_width = message.image().keep_width();
       if (message.image().has_tolerance()) image.tolerance = message.image().tolerance();
     }
-    pattern.origin = Vector("pattern.origin", message.origin(), pattern.origin);
-    pattern.direction = Vector("pattern.direction", message.direction(), pattern.direction);
-    pattern.up = Vector("pattern.up", message.up(), pattern.up);
+    pattern.origin = read_.Vector(At("pattern.origin"), message.origin(), pattern.origin);
+    pattern.direction =
+        read_.Vector(At("pattern.direction"), message.direction(), pattern.direction);
+    pattern.up = read_.Vector(At("pattern.up"), message.up(), pattern.up);
     pattern.rotation = message.rotation();
     if (message.has_scale()) pattern.scale = message.scale();
     if (message.has_depth()) pattern.depth = message.depth();
@@ -130,8 +95,8 @@ class LayerReader {
   SurfacePaint Paint(const v1::SurfacePaint& message) {
     SurfacePaint paint;
     paint.shares = Values(message.shares());
-    paint.vertices = Groups<3>("paint.vertices", message.vertices());
-    paint.triangles = Groups<3>("paint.triangles", message.triangles());
+    paint.vertices = read_.Groups<3>(At("paint.vertices"), message.vertices());
+    paint.triangles = read_.Groups<3>(At("paint.triangles"), message.triangles());
     paint.depth = message.depth();
     paint.file = message.file();
     paint.array = message.array();
@@ -139,7 +104,7 @@ class LayerReader {
   }
 
   const std::string field_;
-  Faults& faults_;
+  const FieldReader& read_;
 };
 
 void Write(const Vec3& vector, Numbers* numbers) { numbers->Add(vector.begin(), vector.end()); }
@@ -220,16 +185,18 @@ struct WriteImpuritySource {
 
 ImpurityLayer LayerFromMessage(const v1::ImpurityLayer& message, const std::string& field,
                                Faults& faults) {
-  LayerReader read(field, faults);
+  const FieldReader fields(faults);
+  LayerReader read(field, fields);
   ImpurityLayer layer;
   layer.name = message.name();
   layer.source = read.Source(message);
   layer.node_set = message.node_set();
   if (message.has_potency()) layer.potency = message.potency();
   if (message.has_weakening()) layer.weakening = message.weakening();
-  layer.blend = read.Choice<Blend>("blend", message.blend(), 3);
+  layer.blend = fields.AfterUnspecified<Blend>(field + ".blend", message.blend(), 3);
   layer.falloff = message.falloff();
-  layer.falloff_shape = read.Choice<FalloffShape>("falloff_shape", message.falloff_shape(), 2);
+  layer.falloff_shape =
+      fields.AfterUnspecified<FalloffShape>(field + ".falloff_shape", message.falloff_shape(), 2);
   if (message.has_seed()) layer.seed = message.seed();
   return layer;
 }
