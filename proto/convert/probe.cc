@@ -9,27 +9,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "core/scene/presets.h"
+#include "proto/convert/field_reader.h"
 #include "proto/convert/scene.h"
 
 namespace cleave {
 namespace {
-
-using Numbers = google::protobuf::RepeatedField<double>;
-
-// Groups of kSize numbers.
-template <size_t kSize>
-std::vector<std::array<double, kSize>> Groups(absl::string_view field, const Numbers& numbers,
-                                              Faults& faults) {
-  const auto count = static_cast<size_t>(numbers.size());
-  if (count % kSize != 0) {
-    faults.Error(field,
-                 absl::StrCat("has ", count, " numbers; a multiple of ", kSize, " is required"));
-  }
-  std::vector<std::array<double, kSize>> groups(count / kSize);
-  for (size_t k = 0; k < kSize * groups.size(); ++k)
-    groups[k / kSize][k % kSize] = numbers[static_cast<int>(k)];
-  return groups;
-}
 
 v1::CurveEnd MessageFromEnd(CurveEnd end) {
   switch (end) {
@@ -68,6 +52,7 @@ void WriteCurve(const StressStrainCurve& curve, v1::StressStrainCurve& message) 
 }  // namespace
 
 MaterialProbe ProbeFromMessage(const v1::ProbeMaterialRequest& message, Faults& faults) {
+  const FieldReader read(faults);
   MaterialProbe probe;
   probe.material = MaterialFromMessage(message.material(), "material", faults);
   if (message.stress() == v1::FRACTURE_STRESS_TOTAL) {
@@ -82,10 +67,10 @@ MaterialProbe ProbeFromMessage(const v1::ProbeMaterialRequest& message, Faults& 
   } else if (message.point_size() == 3) {
     probe.point = Vec3{message.point(0), message.point(1), message.point(2)};
   }
-  probe.fibre_directions = Groups<3>("fibre_directions", message.fibre_directions(), faults);
+  probe.fibre_directions = read.Groups<3>("fibre_directions", message.fibre_directions());
   probe.deformation_gradients =
-      Groups<9>("deformation_gradients", message.deformation_gradients(), faults);
-  probe.pull_directions = Groups<3>("pull_directions", message.pull_directions(), faults);
+      read.Groups<9>("deformation_gradients", message.deformation_gradients());
+  probe.pull_directions = read.Groups<3>("pull_directions", message.pull_directions());
   if (message.has_largest_strain()) probe.largest_strain = message.largest_strain();
   if (message.has_samples()) probe.samples = message.samples();
   return probe;

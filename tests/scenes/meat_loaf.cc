@@ -67,19 +67,11 @@ absl::StatusOr<Demonstration> MakeMeatLoaf(const Setting& setting) {
   flaws.noise = 0.1;
   scene.impurities = flaws;
 
-  made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < -kSize[0] / 2 + kGrip; });
-  made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kSize[0] / 2 - kGrip; });
-  AddNodeSet(scene, "left end", made.grip);
-  AddNodeSet(scene, "right end", made.pulled);
+  GripEnds(made, kSize[0], kGrip);
   // Held along x alone: grips that keep the ends from thinning would split the meat at its skin.
   AddMotion(scene, "left end", {true, false, false}, PullBy({-kPull, 0, 0}, 1));
   made.pull_motion = AddMotion(scene, "right end", {true, false, false}, PullBy({kPull, 0, 0}, 1));
-  // Stronger next to the grips, so that these do not start the cracks.
-  for (const double sign : {-1.0, 1.0}) {
-    const double middle = sign * (kSize[0] / 2 - kGrip);
-    scene.weakenings.push_back(
-        {BoxSelector{{middle - kShoulder, -1, -1}, {middle + kShoulder, 1, 1}}, 2});
-  }
+  Reinforce(scene, kSize[0] / 2 - kGrip, kShoulder);
   SetPace(scene, 1, kFrames);
   return made;
 }

@@ -56,6 +56,18 @@ size_t AddMotion(Scene& scene, const std::string& set, std::array<bool, 3> axes,
   return scene.motions.size() - 1;
 }
 
+void GripEnds(Demonstration& made, double length, double grip) {
+  made.grip = NodesWhere(made.mesh, [&](const Vec3& x) { return x[0] < -length / 2 + grip; });
+  made.pulled = NodesWhere(made.mesh, [&](const Vec3& x) { return x[0] > length / 2 - grip; });
+  AddNodeSet(made.scene, "left end", made.grip);
+  AddNodeSet(made.scene, "right end", made.pulled);
+}
+
+void Reinforce(Scene& scene, double place, double reach) {
+  for (const double middle : {-place, place})
+    scene.weakenings.push_back({BoxSelector{{middle - reach, -1, -1}, {middle + reach, 1, 1}}, 2});
+}
+
 std::vector<Keyframe> PullBy(const Vec3& translation, double seconds) {
   Keyframe end;
   end.time = seconds;

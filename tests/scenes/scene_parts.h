@@ -11,6 +11,7 @@
 #include "core/base/vec3.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
+#include "tests/scenes/demonstration.h"
 
 // What demonstrations are put together from.
 
@@ -31,6 +32,13 @@ void AddNodeSet(Scene& scene, const std::string& name, const std::vector<int32_t
 size_t AddMotion(Scene& scene, const std::string& set,
                  std::array<bool, 3> axes = {true, true, true},
                  std::vector<Keyframe> keyframes = {});
+
+// Names the nodes within `grip` (m) of either end of a body of that length (m) along x with its
+// middle at the origin: grip and pulled of `made`, node sets "left end" and "right end".
+void GripEnds(Demonstration& made, double length, double grip);
+// Doubles the strength of edges within `reach` (m) of x = `place` and x = -`place`, so that grips
+// do not start the cracks.
+void Reinforce(Scene& scene, double place, double reach);
 
 // From rest to `translation` (m) over `seconds`.
 std::vector<Keyframe> PullBy(const Vec3& translation, double seconds);

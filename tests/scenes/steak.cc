@@ -92,20 +92,13 @@ absl::StatusOr<Demonstration> MakeSteak(const Setting& setting) {
   flaws.noise = 0.1;
   scene.impurities = flaws;
 
-  made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < -kSize[0] / 2 + kGrip; });
-  made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kSize[0] / 2 - kGrip; });
-  AddNodeSet(scene, "pinned", made.grip);
-  AddNodeSet(scene, "pulled", made.pulled);
-  AddMotion(scene, "pinned");
+  GripEnds(made, kSize[0], kGrip);
+  AddMotion(scene, "left end");
   made.pull_direction = InPlane(30);
   const Vec3& way = made.pull_direction;
-  made.pull_motion = AddMotion(scene, "pulled", {true, true, true},
+  made.pull_motion = AddMotion(scene, "right end", {true, true, true},
                                PullBy({kPull * way[0], kPull * way[1], 0}, kSeconds));
-  // Stronger next to the grips, so that these do not start the cracks.
-  for (const double sign : {-1.0, 1.0}) {
-    const double middle = sign * (kSize[0] / 2 - 0.6 * kGrip);
-    scene.weakenings.push_back({BoxSelector{{middle - kGrip, -1, -1}, {middle + kGrip, 1, 1}}, 2});
-  }
+  Reinforce(scene, kSize[0] / 2 - 0.6 * kGrip, kGrip);
   SetPace(scene, kSeconds, 90);
   return made;
 }

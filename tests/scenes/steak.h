@@ -11,7 +11,8 @@ namespace cleave {
 absl::StatusOr<Demonstration> MakeSteak(const Setting& setting);
 
 // bridging: strands across the tear when half of it is open: edges stretched 1.3 times and more,
-// within |cos| 0.8 of the fibres. smallest_hold: the least of its boundary by which a piece dangled.
+// within |cos| 0.8 of the fibres. smallest_hold: the least of its boundary by which a piece
+// dangled.
 Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
                      const Run& run);
 

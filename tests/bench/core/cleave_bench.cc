@@ -22,6 +22,7 @@
 #include "core/surface/extract_surface.h"
 #include "core/surface/point_motion.h"
 #include "tests/bench/core/step_cost.h"
+#include "tests/bench/pulled_bar.h"
 
 namespace cleave {
 namespace {
@@ -50,26 +51,12 @@ BoxMesh Bar(double tets) {
 }
 
 Scene PullApart(const Phase& phase) {
-  Scene scene;
   Material plastic;
   plastic.youngs_modulus = 1e9;
   plastic.poisson_ratio = 0.35;
   plastic.density = 1200;
   if (phase.tensile_strength > 0) plastic.tensile_strength = phase.tensile_strength;
-  scene.materials.push_back(plastic);
-  for (const bool left : {true, false}) {
-    NodeSet set;
-    set.name = left ? "left" : "right";
-    set.select.push_back(left ? BoxSelector{{-1, -1, -1}, {1e-6, 1, 1}}
-                              : BoxSelector{{0.3 - 1e-6, -1, -1}, {1, 1, 1}});
-    scene.node_sets.push_back(set);
-    Motion motion;
-    motion.node_set = set.name;
-    motion.keyframes = {{0, {0, 0, 0}, 0}, {1, {left ? -0.06 : 0.06, 0, 0}, 0}};
-    scene.motions.push_back(motion);
-  }
-  scene.timing.frames_per_second = 96;
-  scene.timing.steps_per_frame = 1;
+  Scene scene = PulledBar(plastic, 0.06, 0, 96);
   scene.quality.linear_tolerance = phase.linear_tolerance;
   scene.quality.newton_iterations = 20;
   if (phase.max_passes > 0) scene.fracture.max_passes = phase.max_passes;

@@ -4,35 +4,19 @@
 #include "core/base/status.h"
 #include "core/mesh/procedural.h"
 #include "tests/bench/core/step_cost.h"
+#include "tests/bench/pulled_bar.h"
 
 namespace cleave {
 namespace {
 
 // A bar that is pulled and twisted, as yet whole: what a step costs without what is asked for.
 Scene Plain() {
-  Scene scene;
   Material wood;
   wood.youngs_modulus = 1e7;
   wood.poisson_ratio = 0.3;
   wood.density = 700;
   wood.tensile_strength = 1e7;
-  scene.materials.push_back(wood);
-  for (const bool left : {true, false}) {
-    NodeSet set;
-    set.name = left ? "left" : "right";
-    set.select.push_back(left ? BoxSelector{{-1, -1, -1}, {1e-6, 1, 1}}
-                              : BoxSelector{{0.3 - 1e-6, -1, -1}, {1, 1, 1}});
-    scene.node_sets.push_back(set);
-    Motion motion;
-    motion.node_set = set.name;
-    motion.rotation_center = {0, 0.05, 0.05};
-    motion.rotation_axis = {1, 0, 0};
-    motion.keyframes = {{0, {0, 0, 0}, 0}, {1, {left ? -0.03 : 0.03, 0, 0}, left ? -0.5 : 0.5}};
-    scene.motions.push_back(motion);
-  }
-  scene.timing.frames_per_second = 240;
-  scene.timing.steps_per_frame = 1;
-  return scene;
+  return PulledBar(wood, 0.03, 0.5, 240);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "core/mesh/procedural.h"
 #include "core/simulation/simulation.h"
+#include "tests/bench/pulled_bar.h"
 
 namespace cleave {
 
@@ -17,26 +18,12 @@ SimulatedFrames SimulateBreakingBar() {
   simulated.mesh = *BuildMesh(box);
   simulated.incidence = BuildIncidence(simulated.mesh);
 
-  Scene scene;
   Material plastic;
   plastic.youngs_modulus = 1e8;
   plastic.poisson_ratio = 0.35;
   plastic.density = 1200;
   plastic.tensile_strength = 4e6;
-  scene.materials.push_back(plastic);
-  for (const bool left : {true, false}) {
-    NodeSet set;
-    set.name = left ? "left" : "right";
-    set.select.push_back(left ? BoxSelector{{-1, -1, -1}, {1e-6, 1, 1}}
-                              : BoxSelector{{0.3 - 1e-6, -1, -1}, {1, 1, 1}});
-    scene.node_sets.push_back(set);
-    Motion motion;
-    motion.node_set = set.name;
-    motion.keyframes = {{0, {0, 0, 0}, 0}, {1, {left ? -0.05 : 0.05, 0, 0}, 0}};
-    scene.motions.push_back(motion);
-  }
-  scene.timing.frames_per_second = 96;
-  scene.timing.steps_per_frame = 1;
+  const Scene scene = PulledBar(plastic, 0.05, 0, 96);
   const auto simulation = Simulation::Create(scene, simulated.mesh, {});
   if (!simulation.ok()) {
     std::printf("%s\n", simulation.status().ToString().c_str());
