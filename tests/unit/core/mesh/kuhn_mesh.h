@@ -47,6 +47,17 @@ inline TetMesh KuhnBox(std::array<int, 3> cells, Vec3 size, Vec3 origin = {0, 0,
   return mesh;
 }
 
+// Adds another mesh beside what is there: its ids follow. Regions are left out.
+inline void AppendMesh(TetMesh& mesh, const TetMesh& other) {
+  const auto offset = static_cast<int32_t>(mesh.node_count());
+  mesh.rest_positions.insert(mesh.rest_positions.end(), other.rest_positions.begin(),
+                             other.rest_positions.end());
+  for (auto tet : other.tets) {
+    for (int32_t& node : tet) node += offset;
+    mesh.tets.push_back(tet);
+  }
+}
+
 }  // namespace cleave
 
 #endif  // CLEAVE_TESTS_UNIT_CORE_MESH_KUHN_MESH_H_

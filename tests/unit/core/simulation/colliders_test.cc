@@ -10,6 +10,7 @@
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/contact/test_surfaces.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/run_frames.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
@@ -34,18 +35,6 @@ Collider& AddCollider(Scene& scene, const Shape& shape, double friction = 0) {
   return collider;
 }
 
-FrameReport RunFrames(Simulation& simulation, int frames) {
-  const StopFlag stop;
-  FrameReport last;
-  for (int frame = 0; frame < frames; ++frame) {
-    auto report = simulation.Advance(stop);
-    EXPECT_TRUE(report.ok()) << report.status();
-    if (!report.ok()) break;
-    last = *report;
-  }
-  return last;
-}
-
 double Lowest(const Simulation& simulation, size_t axis = 2) {
   double lowest = 1e300;
   for (const Vec3& position : simulation.positions()) lowest = std::min(lowest, position[axis]);
@@ -66,12 +55,6 @@ Vec3 PointAt(const ColliderPlace& place, const Vec3& point) {
   const Eigen::Vector3d at =
       Eigen::Quaterniond(w, x, y, z) * Eigen::Vector3d(point[0], point[1], point[2]);
   return {at[0] + place.translation[0], at[1] + place.translation[1], at[2] + place.translation[2]};
-}
-
-double Budget(const FrameReport& report, double start) {
-  return report.external_work + start - report.kinetic_energy - report.elastic_energy -
-         report.contact_energy - report.fracture_energy - report.friction_dissipation -
-         report.integration_dissipation;
 }
 
 TEST(Colliders, ABlockRestsOnThePlaneAsDeepAsItsWeightPresses) {

@@ -5,6 +5,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/run_frames.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
@@ -32,18 +33,6 @@ FibreFamily Fibres(double stiffness, const Vec3& direction) {
   family.stiffness = stiffness;
   family.direction = ConstantDirection{direction};
   return family;
-}
-
-FrameReport RunFrames(Simulation& simulation, int frames) {
-  const StopFlag stop;
-  FrameReport last;
-  for (int frame = 0; frame < frames; ++frame) {
-    auto report = simulation.Advance(stop);
-    EXPECT_TRUE(report.ok()) << report.status();
-    if (!report.ok()) break;
-    last = *report;
-  }
-  return last;
 }
 
 double ModulusWith(const std::vector<FibreFamily>& fibres) {

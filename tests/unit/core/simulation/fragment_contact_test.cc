@@ -8,40 +8,16 @@
 #include "core/mesh/tet_geometry.h"
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/run_frames.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
 namespace {
 
-FrameReport RunFrames(Simulation& simulation, int frames) {
-  const StopFlag stop;
-  FrameReport last;
-  for (int frame = 0; frame < frames; ++frame) {
-    auto report = simulation.Advance(stop);
-    EXPECT_TRUE(report.ok()) << report.status();
-    if (!report.ok()) break;
-    last = *report;
-  }
-  return last;
-}
-
-double Budget(const FrameReport& report, double start) {
-  return report.external_work + start - report.kinetic_energy - report.elastic_energy -
-         report.contact_energy - report.fracture_energy - report.friction_dissipation -
-         report.integration_dissipation;
-}
-
 // Two blocks a little apart, the right one half a cell higher: nodes meet faces.
 TetMesh TwoBlocks() {
   TetMesh mesh = KuhnBox({3, 3, 3}, {0.3, 0.3, 0.3});
-  const TetMesh right = KuhnBox({3, 3, 3}, {0.3, 0.3, 0.3}, {0.43, 0.03, 0.05});
-  const auto offset = static_cast<int32_t>(mesh.node_count());
-  mesh.rest_positions.insert(mesh.rest_positions.end(), right.rest_positions.begin(),
-                             right.rest_positions.end());
-  for (auto tet : right.tets) {
-    for (int32_t& node : tet) node += offset;
-    mesh.tets.push_back(tet);
-  }
+  AppendMesh(mesh, KuhnBox({3, 3, 3}, {0.3, 0.3, 0.3}, {0.43, 0.03, 0.05}));
   return mesh;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/run_frames.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
@@ -15,20 +16,10 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-void Append(TetMesh& mesh, const TetMesh& other) {
-  const auto offset = static_cast<int32_t>(mesh.node_count());
-  mesh.rest_positions.insert(mesh.rest_positions.end(), other.rest_positions.begin(),
-                             other.rest_positions.end());
-  for (auto tet : other.tets) {
-    for (int32_t& node : tet) node += offset;
-    mesh.tets.push_back(tet);
-  }
-}
-
 // Blocks of rubber of 0.1 m, whose lower corners are at these places (m).
 TetMesh Blocks(const std::vector<Vec3>& corners) {
   TetMesh mesh;
-  for (const Vec3& corner : corners) Append(mesh, KuhnBox({2, 2, 2}, {0.1, 0.1, 0.1}, corner));
+  for (const Vec3& corner : corners) AppendMesh(mesh, KuhnBox({2, 2, 2}, {0.1, 0.1, 0.1}, corner));
   return mesh;
 }
 constexpr size_t kBlockNodes = 27;
@@ -46,30 +37,12 @@ Scene GroundScene() {
   return scene;
 }
 
-FrameReport RunFrames(Simulation& simulation, int frames) {
-  const StopFlag stop;
-  FrameReport last;
-  for (int frame = 0; frame < frames; ++frame) {
-    auto report = simulation.Advance(stop);
-    EXPECT_TRUE(report.ok()) << report.status();
-    if (!report.ok()) break;
-    last = *report;
-  }
-  return last;
-}
-
 // Runs until so many pieces sleep; the frames that it took, or `most`.
 int RunUntilAsleep(Simulation& simulation, int64_t pieces, int most) {
   for (int frame = 1; frame <= most; ++frame) {
     if (RunFrames(simulation, 1).sleeping_pieces == pieces) return frame;
   }
   return most;
-}
-
-double Budget(const FrameReport& report, double start) {
-  return report.external_work + start - report.kinetic_energy - report.elastic_energy -
-         report.contact_energy - report.fracture_energy - report.friction_dissipation -
-         report.integration_dissipation;
 }
 
 double Height(const Simulation& simulation, size_t block) {
