@@ -126,6 +126,7 @@ LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence
     const Vec3& p = without.frames[frame].positions[node];
     const Vec3& q = with.frames[frame].positions[node];
     const double speed = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) / dt;
+    change.speeds.push_back(speed);
     all += speed * speed;
     if (rings[node] <= 3) near += speed * speed;
     double& largest = InSecond(with_impurity.mesh.rest_positions[node]) ? change.largest_elsewhere

@@ -20,6 +20,7 @@ struct LocalityOfChange {
   double largest = 0;
   double largest_elsewhere = 0;         // in the body that has no impurity
   double share_within_three_rings = 0;  // of the sum of squares, of nodes three edges away or less
+  std::vector<double> speeds;           // a node each
 };
 LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence& incidence,
                              const Run& without, const Run& with);

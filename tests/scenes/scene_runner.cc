@@ -4,19 +4,24 @@
 //   scene_runner NAME VARIANT [--seed N] [--lattice] [--coarseness C] [--threads N]
 //                [--picture FILE.png] [--sheet FILE.png] [--strain] [--width PIXELS]
 //                [--azimuth DEGREES] [--elevation DEGREES] [--frame N]
+//                [--change FILE.png]: of locality with, where it parts from locality without
 //
 // scene_runner alone lists names and variants.
 
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
+#include "client/io/preview/impurity_picture.h"
 #include "client/io/preview/preview.h"
 #include "client/io/preview/scene_look.h"
 #include "tests/scenes/demonstration.h"
+#include "tests/scenes/locality.h"
 
 namespace cleave {
 namespace {
@@ -27,6 +32,7 @@ struct Arguments {
   int threads = 1;
   std::string picture;
   std::string sheet;
+  std::string change;
   bool strain = false;
   int width = 800;  // pixels
   CameraOptions camera;
@@ -51,6 +57,32 @@ void PrintLine(const Arguments& arguments, const Metrics& metrics) {
   std::printf("}\n");
 }
 
+// Where the bodies of S6 begin to part: changes of velocity over four decades.
+absl::Status DrawChange(const Arguments& arguments, const Outcome& with) {
+  Setting setting = arguments.setting;
+  setting.variant = "without";
+  const auto without = Demonstrate(arguments.name, setting, arguments.threads);
+  if (!without.ok()) return without.status();
+  const TetMesh& mesh = with.demonstration.mesh;
+  const LocalityOfChange change =
+      CompareRuns(with.demonstration, BuildIncidence(mesh), without->run, with.run);
+  constexpr double kDecades = 4;
+  std::vector<double> shares(mesh.rest_positions.size(), 0);
+  for (size_t node = 0; node < change.speeds.size(); ++node) {
+    const double decades = std::log10(change.speeds[node] / change.largest);
+    shares[node] = std::clamp(1 + decades / kDecades, 0.0, 1.0);
+  }
+  ImpurityPictureOptions options;
+  options.width = arguments.width;
+  options.camera = arguments.camera;
+  options.title = "change of velocity by one impure node";
+  options.low = "1e-4 and less";
+  options.high = "largest";
+  const auto image = RenderImpurities(mesh, shares, options);
+  if (!image.ok()) return image.status();
+  return WritePng(arguments.change, *image);
+}
+
 absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   const std::vector<Frame>& frames = outcome.run.frames;
   FrameSource source;
@@ -63,6 +95,9 @@ absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   options.samples = 3;
   options.camera = arguments.camera;
   ApplySceneLook(outcome.demonstration.scene, outcome.demonstration.mesh, options);
+  if (!arguments.change.empty()) {
+    if (absl::Status drawn = DrawChange(arguments, outcome); !drawn.ok()) return drawn;
+  }
   if (arguments.strain) options.color_by = ColorBy::kStrain;
   if (!arguments.picture.empty()) {
     const int64_t last = source.count - 1;
@@ -108,6 +143,8 @@ int Main(int argc, char** argv) {
       arguments.picture = value;
     else if (option == "--sheet")
       arguments.sheet = value;
+    else if (option == "--change")
+      arguments.change = value;
     else if (option == "--azimuth")
       arguments.camera.azimuth = std::atof(value);
     else if (option == "--elevation")

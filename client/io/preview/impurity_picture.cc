@@ -67,7 +67,7 @@ absl::StatusOr<Image> RenderImpurities(const TetMesh& mesh, std::span<const doub
   const TextStyle bold{.height = 1.15 * size, .pen = 0.18};
   if (!options.title.empty()) DrawText(options.title, margin, margin + size, bold, image);
   Legend legend;
-  legend.swatches = {{"pure", ImpurityColor(0)}, {"most impure", ImpurityColor(1)}};
+  legend.swatches = {{options.low, ImpurityColor(0)}, {options.high, ImpurityColor(1)}};
   const double width = LegendWidth(legend, 0.85 * size);
   const bool fits = options.title.empty() ||
                     margin + TextWidth(options.title, bold) + width + 2 * margin < options.width;

@@ -16,6 +16,7 @@ struct ImpurityPictureOptions {
   int samples = 3;  // RenderStyle::samples
   CameraOptions camera;
   std::string title;
+  std::string low = "pure", high = "most impure";  // what shares of 0 and 1 are called
 };
 
 // Draws the surface of a body at rest in magenta on yellow: `impurities` has a share in [0, 1] for
