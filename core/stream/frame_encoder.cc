@@ -169,10 +169,11 @@ void FrameEncoder::AppendCheckpoint(std::span<const int32_t> edges, FrameHeader&
   std::string list;
   AppendTopology(SectionType::kTopologyCheckpoint, edges, with_list, list);
   if (labels_.has_value() && !edges.empty()) {
-    const std::string coded = labels_->Encode(edges);
-    const absl::StatusOr<std::vector<int32_t>> said = labels_->Decode(coded);
+    const std::vector<int32_t>& labels = interpolation_->pieces().labels();
+    const std::string coded = labels_->Encode(labels);
+    const std::vector<int32_t> said = labels_->Between(labels);
     std::vector<int32_t> unsaid;
-    std::set_difference(edges.begin(), edges.end(), said->begin(), said->end(),
+    std::set_difference(edges.begin(), edges.end(), said.begin(), said.end(),
                         std::back_inserter(unsaid));
     FrameHeader with_labels = header;
     std::string labelled;
@@ -277,7 +278,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   std::string body;
   const auto append_positions = [&] {
     if (interpolation_.has_value()) {
-      interpolation_->Encode(key, frame.broken_edges, state_, header, body, next_, next_residuals_);
+      interpolation_->Encode(key, state_, header, body, next_, next_residuals_);
       std::swap(state_.residuals, next_residuals_);
     } else {
       AppendPositions(key, header, body);
@@ -286,11 +287,13 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   const auto all_hold = [&] {
     return interpolation_.has_value() ? interpolation_->AllHold(state_) : next_ == state_.positions;
   };
+  const bool holds = !key && !breaks && all_hold();
+  if (interpolation_.has_value() && !holds) interpolation_->SetBroken(frame.broken_edges, state_);
   if (key) {
     header.kind = FrameKind::kKey;
     AppendCheckpoint(frame.broken_edges, header, body);
     append_positions();
-  } else if (!breaks && all_hold()) {
+  } else if (holds) {
     header.kind = FrameKind::kHold;
     next_ = state_.positions;
   } else {

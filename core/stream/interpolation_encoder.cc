@@ -119,11 +119,14 @@ Continuation InterpolationEncoder::Choose(int64_t group, std::span<const int32_t
   return FitContinuation(samples);
 }
 
-void InterpolationEncoder::Encode(bool key, std::span<const int32_t> broken,
-                                  const StreamState& state, FrameHeader& header, std::string& body,
-                                  std::vector<int32_t>& next, ResidualHistory& next_history) {
+void InterpolationEncoder::SetBroken(std::span<const int32_t> broken, const StreamState& state) {
   predictor_.Prepare(tolerance_, broken, state.positions, state.previous, history_is_new_);
   history_is_new_ = false;
+}
+
+void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeader& header,
+                                  std::string& body, std::vector<int32_t>& next,
+                                  ResidualHistory& next_history) {
   motion_.held.clear();
   if (!key) ChooseHolds(state);
   motion_.continuations.clear();

@@ -24,6 +24,7 @@ class InterpolationEncoder {
 
   const NodeOrder& order() const { return predictor_.order(); }
   const Stencils& stencils() const { return predictor_.stencils(); }
+  const Pieces& pieces() const { return predictor_.pieces(); }
 
   // Takes the positions (m) of the next frame. Error, which changes nothing that matters:
   // OutOfRange for a coordinate that is not on the grid, naming the first such node.
@@ -32,11 +33,14 @@ class InterpolationEncoder {
   // True if every node may stay where `state` has it.
   bool AllHold(const StreamState& state) const;
 
-  // Appends the motion and positions sections of a key or delta frame with these broken edges that
-  // follows `state`, and gives the positions and the history that a decoder will have.
-  void Encode(bool key, std::span<const int32_t> broken, const StreamState& state,
-              FrameHeader& header, std::string& body, std::vector<int32_t>& next,
-              ResidualHistory& next_history);
+  // Brings stencils and pieces to the broken edges of the frame whose targets are set and that
+  // follows `state`.
+  void SetBroken(std::span<const int32_t> broken, const StreamState& state);
+
+  // Appends the motion and positions sections of that frame, a key or delta, and gives the
+  // positions and the history that a decoder will have.
+  void Encode(bool key, const StreamState& state, FrameHeader& header, std::string& body,
+              std::vector<int32_t>& next, ResidualHistory& next_history);
 
   // The frame that was encoded, or a hold, is now the last.
   void Accept(FrameKind kind);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -50,7 +49,7 @@ PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
   }
 }
 
-PieceLabels::Ranking PieceLabels::Rank(size_t place, const std::vector<int32_t>& labels) const {
+PieceLabels::Ranking PieceLabels::Rank(size_t place, std::span<const int32_t> labels) const {
   Ranking ranking{};
   std::array<size_t, kStencilNodes> votes{};
   const std::array<int32_t, kStencilNodes>& stencil = stencils_[place];
@@ -76,42 +75,18 @@ PieceLabels::Ranking PieceLabels::Rank(size_t place, const std::vector<int32_t>&
   return ranking;
 }
 
-std::string PieceLabels::Encode(std::span<const int32_t> broken) const {
-  // Pieces by joining the ends of every edge that is not broken.
+std::string PieceLabels::Encode(std::span<const int32_t> labels) const {
   const size_t count = stencils_.size();
-  std::vector<int32_t> joined(count);
-  std::iota(joined.begin(), joined.end(), 0);
-  const auto root_of = [&](int32_t at) {
-    while (joined[static_cast<size_t>(at)] != at) {
-      int32_t& above = joined[static_cast<size_t>(at)];
-      above = joined[static_cast<size_t>(above)];
-      at = above;
-    }
-    return at;
-  };
-  auto next_broken = broken.begin();
-  for (size_t edge = 0; edge < edges_.size(); ++edge) {
-    if (next_broken != broken.end() && *next_broken == static_cast<int32_t>(edge)) {
-      ++next_broken;
-      continue;
-    }
-    const int32_t a = root_of(edges_[edge][0]);
-    const int32_t b = root_of(edges_[edge][1]);
-    joined[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  // Labels are counted as places meet them; a piece's root is its first place.
   struct Choice {
     size_t context;
     uint32_t code;  // a rank, kNew or kListed
   };
-  std::vector<int32_t> labels(count);
   std::vector<Choice> choices(count);
   std::array<std::array<uint64_t, kSymbols>, kContexts> counts{};
   int32_t labels_so_far = 0;
   for (size_t at = 0; at < count; ++at) {
-    const int32_t root = root_of(static_cast<int32_t>(at));
-    const bool is_new = root == static_cast<int32_t>(at);
-    labels[at] = is_new ? labels_so_far++ : labels[static_cast<size_t>(root)];
+    const bool is_new = labels[at] == labels_so_far;
+    if (is_new) ++labels_so_far;
     Choice& choice = choices[at];
     const Ranking ranking = Rank(at, labels);
     choice.context = ranking.context;
@@ -191,7 +166,7 @@ absl::StatusOr<std::vector<int32_t>> PieceLabels::Decode(absl::string_view coded
   return Between(labels);
 }
 
-std::vector<int32_t> PieceLabels::Between(const std::vector<int32_t>& labels) const {
+std::vector<int32_t> PieceLabels::Between(std::span<const int32_t> labels) const {
   std::vector<int32_t> between;
   for (size_t edge = 0; edge < edges_.size(); ++edge) {
     if (labels[static_cast<size_t>(edges_[edge][0])] !=

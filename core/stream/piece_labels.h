@@ -22,11 +22,14 @@ class PieceLabels {
   PieceLabels(const NodeOrder& order, const Stencils& unbroken,
               std::span<const std::array<int32_t, 2>> edges);
 
-  // A label for each node, coded, such that nodes that unbroken edges join have the same one.
-  std::string Encode(std::span<const int32_t> broken) const;
+  // The pieces of places as Pieces numbers them, coded.
+  std::string Encode(std::span<const int32_t> labels) const;
 
-  // The edges between nodes of different labels, ascending. Error: DataLoss.
+  // What Encode coded, as the edges between places of different labels, ascending. Error: DataLoss.
   absl::StatusOr<std::vector<int32_t>> Decode(absl::string_view coded) const;
+
+  // The edges between places of different labels, ascending.
+  std::vector<int32_t> Between(std::span<const int32_t> labels) const;
 
  private:
   struct Ranking {
@@ -35,8 +38,7 @@ class PieceLabels {
     size_t context;  // in which the label is coded
   };
   // Labels of a place's stencil: the most frequent first, of equals that of the nearer place.
-  Ranking Rank(size_t place, const std::vector<int32_t>& labels) const;
-  std::vector<int32_t> Between(const std::vector<int32_t>& labels) const;
+  Ranking Rank(size_t place, std::span<const int32_t> labels) const;
 
   std::vector<std::array<int32_t, 2>> edges_;  // as places
   std::vector<std::array<int32_t, kStencilNodes>> stencils_;

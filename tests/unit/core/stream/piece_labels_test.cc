@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,15 @@ PieceLabels LabelsOf(const Body& body) {
   std::vector<Vec3> by_place;
   for (const int32_t node : order.nodes) by_place.push_back(body.rest[static_cast<size_t>(node)]);
   return PieceLabels(order, Stencils(order, by_place, body.edges), body.edges);
+}
+
+// The pieces that are left when these edges break.
+std::vector<int32_t> PiecesOf(const Body& body, std::span<const int32_t> broken) {
+  EdgeGraph graph(MakeNodeOrder(body.rest), body.edges);
+  for (const int32_t edge : broken) graph.Break(edge);
+  Pieces pieces;
+  pieces.Find(graph);
+  return pieces.labels();
 }
 
 // The edges between cells of random centres.
@@ -56,7 +66,7 @@ TEST(PieceLabels, SayWhichEdgesJoinDifferentPieces) {
   const PieceLabels labels = LabelsOf(body);
   const std::vector<int32_t> broken = EdgesBetweenCells(body, 20);
   ASSERT_GT(broken.size(), 5000u);
-  const std::string coded = labels.Encode(broken);
+  const std::string coded = labels.Encode(PiecesOf(body, broken));
   const auto said = labels.Decode(coded);
   ASSERT_TRUE(said.ok()) << said.status();
   EXPECT_EQ(*said, broken);
@@ -71,8 +81,9 @@ TEST(PieceLabels, LeaveOutOnlyEdgesThatBrokeInsideAPiece) {
     for (uint64_t edge = 0; edge < body.edges.size(); ++edge) {
       if (Random(2, edge, 0) < 2 * share - 1) broken.push_back(static_cast<int32_t>(edge));
     }
-    const auto said = labels.Decode(labels.Encode(broken));
+    const auto said = labels.Decode(labels.Encode(PiecesOf(body, broken)));
     ASSERT_TRUE(said.ok()) << said.status();
+    EXPECT_EQ(*said, labels.Between(PiecesOf(body, broken)));
     EXPECT_TRUE(std::includes(broken.begin(), broken.end(), said->begin(), said->end()));
     if (share == 1) {
       EXPECT_EQ(*said, broken);
@@ -83,7 +94,7 @@ TEST(PieceLabels, LeaveOutOnlyEdgesThatBrokeInsideAPiece) {
 TEST(PieceLabels, DamagedOnesAreRefusedOrSayOtherEdges) {
   const Body body = LatticeBody(8, 6, 5);
   const PieceLabels labels = LabelsOf(body);
-  const std::string coded = labels.Encode(EdgesBetweenCells(body, 6));
+  const std::string coded = labels.Encode(PiecesOf(body, EdgesBetweenCells(body, 6)));
   for (size_t size = 0; size < coded.size(); ++size) {
     EXPECT_FALSE(labels.Decode(coded.substr(0, size)).ok()) << size;
   }
