@@ -49,6 +49,11 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
     if (encoder.state_.frame >= 0 && !encoder.state_.has_previous) {
       return absl::FailedPreconditionError("the state to go on from is of another predictor");
     }
+    const ResidualHistory& residuals = encoder.state_.residuals;
+    if (header.coder_id == kCoderContextRans && !residuals.fresh &&
+        residuals.activities.size() != rest_positions.size()) {
+      return absl::FailedPreconditionError("the state to go on from is of another coder");
+    }
     encoder.interpolation_.emplace(header, mesh);
     encoder.labels_.emplace(encoder.interpolation_->order(), encoder.interpolation_->stencils(),
                             mesh.edges);

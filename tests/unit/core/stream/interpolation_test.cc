@@ -234,6 +234,21 @@ INSTANTIATE_TEST_SUITE_P(Coders, Interpolation,
                            return "Coder" + std::to_string(coder.param);
                          });
 
+TEST(InterpolationState, OneOfAnotherCoderIsRefused) {
+  const Body body = LatticeBody(4, 3, 3);
+  StreamParameters parameters = Parameters(body.edges.size(), 1e-4, 100);
+  parameters.predictor_id = kPredictorInterpolation;
+  FrameEncoder encoder = MakeEncoder(parameters, body.mesh());
+  for (int64_t number = 0; number < 2; ++number) {
+    ASSERT_TRUE(encoder.Encode(BreakingFrame(body, number)).ok());
+  }
+  parameters.coder_id = kCoderContextRans;
+  const auto header = MakeStreamHeader(parameters, body.rest);
+  ASSERT_TRUE(header.ok()) << header.status();
+  const absl::Status status = FrameEncoder::Create(*header, body.mesh(), encoder.state()).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition) << status;
+}
+
 TEST(Stencils, AreThoseOfTheBrokenEdgesHoweverTheseCameAbout) {
   const Body body = LatticeBody(9, 8, 7);
   const NodeOrder order = MakeNodeOrder(body.rest);
