@@ -79,13 +79,11 @@ Continuation Refine(std::span<const DetailSample> samples, const Continuation& b
 }  // namespace
 
 Continuation FitContinuation(std::span<const DetailSample> samples) {
-  constexpr std::array<Continuation, 4> kSimple = {
-      {{64, 0, 0}, {128, -64, 0}, {96, -32, 0}, kFromRest}};
-  constexpr double kListedBits = 48;  // that a continuation costs beyond a simple one
-  if (samples.empty()) return kSimple[0];
-  Continuation best = kSimple[0];
+  constexpr double kListedBits = 48;  // that a continuation costs beyond one with a name
+  Continuation best = kNamedContinuations[0];
+  if (samples.empty()) return best;
   double least = Cost(samples, best);
-  for (const Continuation& by : kSimple) {
+  for (const Continuation& by : kNamedContinuations) {
     const double cost = Cost(samples, by);
     if (cost < least) {
       least = cost;

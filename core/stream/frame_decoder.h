@@ -65,9 +65,9 @@ class FrameDecoder {
 
   StreamHeader header_;
   std::string header_bytes_;
-  std::vector<Vec3> rest_positions_;
-  std::vector<int32_t> rest_;  // on the grid of rest_tolerance_
-  double rest_tolerance_ = 0;  // m
+  std::vector<Vec3> rest_positions_;  // with predictor 1
+  std::vector<int32_t> rest_;         // on the grid of rest_tolerance_
+  double rest_tolerance_ = 0;         // m
   StreamState state_;
   StreamState scratch_;  // where the next frame is decoded, so that a bad one changes nothing
   uint64_t state_hash_ = 0;

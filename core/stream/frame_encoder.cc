@@ -32,7 +32,6 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
   CLEAVE_ASSIGN_OR_RETURN(encoder.header_, ParseStreamHeader(encoder.header_bytes_));
   CLEAVE_RETURN_IF_ERROR(CheckStreamMesh(header, mesh));
   const std::span<const Vec3> rest_positions = mesh.rest_positions;
-  encoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
   encoder.tolerance_ = header.tolerance;
   encoder.next_.resize(rest_positions.size() * 3);
   if (state.has_value() && state->frame >= 0) {
@@ -59,6 +58,7 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
                             mesh.edges);
     return encoder;
   }
+  encoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
   encoder.rest_ = QuantiseRest(encoder.rest_positions_, header.origin,
                                QuantisationStep(encoder.tolerance_, header.domain_bound));
   return encoder;

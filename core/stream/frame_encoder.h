@@ -72,10 +72,10 @@ class FrameEncoder {
 
   StreamHeader header_;
   std::string header_bytes_;
-  std::vector<Vec3> rest_positions_;
-  std::vector<int32_t> rest_;  // on the grid of tolerance_
-  double tolerance_ = 0;       // m, of the next frame
-  uint32_t epoch_ = 0;         // of the next frame
+  std::vector<Vec3> rest_positions_;  // with predictor 1
+  std::vector<int32_t> rest_;         // on the grid of tolerance_; with predictor 1
+  double tolerance_ = 0;              // m, of the next frame
+  uint32_t epoch_ = 0;                // of the next frame
   StreamState state_;
   std::vector<int32_t> next_;                          // quantised positions of the frame in work
   std::optional<InterpolationEncoder> interpolation_;  // with predictor 2

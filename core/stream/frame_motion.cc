@@ -1,7 +1,6 @@
 #include "core/stream/frame_motion.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 
 #include "core/base/bytes.h"
@@ -13,10 +12,7 @@ namespace {
 
 constexpr uint8_t kSomeHold = 1;
 
-// Continuations that take one byte: the detail stays, goes on as it went, half so, is that at rest.
-constexpr std::array<Continuation, 4> kNamed = {
-    {{64, 0, 0}, {128, -64, 0}, {96, -32, 0}, kFromRest}};
-constexpr auto kListed = static_cast<uint8_t>(kNamed.size());
+constexpr auto kListed = static_cast<uint8_t>(kNamedContinuations.size());
 
 size_t LargestMotion(int64_t pieces, int64_t groups) {
   return 1 + (static_cast<size_t>(pieces) + 7) / 8 + 8 * static_cast<size_t>(groups);
@@ -38,9 +34,9 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   }
   if (!key) {
     for (const Continuation& by : motion.continuations) {
-      const auto named = std::find(kNamed.begin(), kNamed.end(), by);
-      writer.Put(static_cast<uint8_t>(named - kNamed.begin()));
-      if (named != kNamed.end()) continue;
+      const auto named = std::find(kNamedContinuations.begin(), kNamedContinuations.end(), by);
+      writer.Put(static_cast<uint8_t>(named - kNamedContinuations.begin()));
+      if (named != kNamedContinuations.end()) continue;
       writer.Put(static_cast<int16_t>(by.last));
       writer.Put(static_cast<int16_t>(by.before));
       writer.Put(static_cast<int16_t>(by.rest));
@@ -84,7 +80,7 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section
     for (Continuation& by : motion.continuations) {
       const auto choice = reader.Get<uint8_t>();
       if (choice < kListed) {
-        by = kNamed[choice];
+        by = kNamedContinuations[choice];
         continue;
       }
       by.last = reader.Get<int16_t>();

@@ -20,9 +20,8 @@ InterpolationPredictor::InterpolationPredictor(const StreamHeader& header, const
       stencils_(order_, ByPlace(order_, mesh.rest_positions), mesh.edges),
       origin_(header.origin),
       domain_bound_(header.domain_bound) {
-  rest_positions_ = ByPlace(order_, mesh.rest_positions);
-  details_.resize(rest_positions_.size());
-  next_details_.resize(rest_positions_.size());
+  details_.resize(mesh.rest_positions.size());
+  next_details_.resize(mesh.rest_positions.size());
 }
 
 Grid3 InterpolationPredictor::DetailIn(int32_t place, std::span<const int32_t> positions) const {
@@ -50,7 +49,7 @@ void InterpolationPredictor::Prepare(double tolerance, std::span<const int32_t> 
   const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
   const bool grid_is_new = tolerance != tolerance_;
   if (grid_is_new) {
-    rest_ = QuantiseRest(rest_positions_, origin_,
+    rest_ = QuantiseRest(stencils_.rest_positions(), origin_,
                          QuantisationStep(tolerance, domain_bound_) / kUnitsPerStep);
     tolerance_ = tolerance;
   }

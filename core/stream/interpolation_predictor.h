@@ -32,6 +32,11 @@ inline constexpr int32_t kContinuationOne = 64;
 inline constexpr int32_t kMaxContinuation = 4 * kContinuationOne;
 inline constexpr Continuation kFromRest = {0, 0, kContinuationOne};
 
+// Those that a frame names by one byte, their position here: the detail stays, goes on as it went,
+// half so, is that at rest.
+inline constexpr std::array<Continuation, 4> kNamedContinuations = {
+    {{64, 0, 0}, {128, -64, 0}, {96, -32, 0}, kFromRest}};
+
 // Predictor 2 of FORMAT.md: each place from coarser places of the same frame and from how it lay
 // among them before. A place's detail is what remains of its position after the blend of its
 // stencil's. Holds what follows from rest positions, broken edges and the last two frames, and
@@ -105,7 +110,6 @@ class InterpolationPredictor {
   Grid3 DetailIn(int32_t place, std::span<const int32_t> positions) const;
   void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);
 
-  std::vector<Vec3> rest_positions_;  // m, by place
   NodeOrder order_;
   Stencils stencils_;
   Vec3 origin_;

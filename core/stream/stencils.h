@@ -44,6 +44,7 @@ class Stencils {
 
   const Stencil& operator[](int32_t place) const { return stencils_[static_cast<size_t>(place)]; }
   const Pieces& pieces() const { return pieces_; }
+  const std::vector<Vec3>& rest_positions() const { return rest_; }  // m, by place
   const std::vector<int32_t>& broken() const { return broken_; }
 
  private:

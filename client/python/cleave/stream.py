@@ -33,7 +33,7 @@ from cleave.frames import (
     WrongStateError,
     split_frame,
 )
-from cleave.interpolation import Motion, Predictor
+from cleave.interpolation import MAX_QUANTISED, Motion, Predictor
 from cleave.labels import PieceLabels
 from cleave.residuals import ResidualHistory
 from cleave.sections import decode_parts, edges_of_gaps, residuals_of_planes
@@ -53,7 +53,6 @@ __all__ = [
     "split_frame",
 ]
 
-MAX_QUANTISED = 2**30 - 1
 MAX_TOPOLOGY_EDGES = 262144
 _REST, _LAST, _LINEAR, _INTERPOLATION = 1, 2, 3, 4
 
