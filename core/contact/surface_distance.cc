@@ -89,28 +89,47 @@ int32_t SurfaceDistance::Build(int32_t begin, int32_t end) {
 // Source: Ericson, "Real-Time Collision Detection", 5.1.5: by the Voronoi regions of the triangle.
 void SurfaceDistance::Test(const Triangle& triangle, const Eigen::Vector3d& point, Closest& best) {
   const auto& [a, b, c] = triangle.corners;
-  const auto offer = [&](const Eigen::Vector3d& closest, const Eigen::Vector3d& normal) {
+  const auto offer = [&](const Eigen::Vector3d& closest, const Eigen::Vector3d& normal,
+                         double second, double third) {
     const double squared = (point - closest).squaredNorm();
-    if (squared < best.squared) best = {squared, closest, normal, &triangle};
+    if (squared < best.squared) best = {squared, closest, normal, &triangle, second, third};
+  };
+  const auto offer_corner = [&](size_t corner) {
+    offer(triangle.corners[corner], triangle.vertices[corner], corner == 1 ? 1 : 0,
+          corner == 2 ? 1 : 0);
   };
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = point - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return offer(a, triangle.vertices[0]);
+  if (d1 <= 0 && d2 <= 0) return offer_corner(0);
   const Eigen::Vector3d bp = point - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return offer(b, triangle.vertices[1]);
+  if (d3 >= 0 && d4 <= d3) return offer_corner(1);
+  // Sides without length are closest nowhere.
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return offer(a + d1 / (d1 - d3) * ab, triangle.edges[0]);
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) {
+    const double share = d1 / (d1 - d3);
+    return offer(a + share * ab, triangle.edges[0], share, 0);
+  }
   const Eigen::Vector3d cp = point - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return offer(c, triangle.vertices[2]);
+  if (d6 >= 0 && d5 <= d6) return offer_corner(2);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return offer(a + d2 / (d2 - d6) * ac, triangle.edges[2]);
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) {
+    const double share = d2 / (d2 - d6);
+    return offer(a + share * ac, triangle.edges[2], 0, share);
+  }
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return offer(b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), triangle.edges[1]);
-  const double sum = va + vb + vc;
-  offer(a + vb / sum * ab + vc / sum * ac, triangle.face);
+  const double past_b = d4 - d3, past_c = d5 - d6;
+  if (va <= 0 && past_b >= 0 && past_c >= 0 && past_b + past_c > 0) {
+    const double share = past_b / (past_b + past_c);
+    return offer(b + share * (c - b), triangle.edges[1], 1 - share, share);
+  }
+  // Positive but for the rounding of triangles with hardly any area.
+  const double of_b = std::max(vb, 0.0), of_c = std::max(vc, 0.0);
+  const double sum = std::max(va, 0.0) + of_b + of_c;
+  if (sum > 0)
+    return offer(a + of_b / sum * ab + of_c / sum * ac, triangle.face, of_b / sum, of_c / sum);
+  for (const size_t corner : {0, 1, 2}) offer_corner(corner);
 }
 
 void SurfaceDistance::Search(int32_t node, const Eigen::Vector3d& point, Closest& best) const {
@@ -150,14 +169,9 @@ SurfacePoint SurfaceDistance::ClosestPoint(const Eigen::Vector3d& point) const {
   Closest best{std::numeric_limits<double>::infinity(), Eigen::Vector3d::Zero(),
                Eigen::Vector3d::UnitZ()};
   Search(0, point, best);
-  const auto& [a, b, c] = best.triangle->corners;
-  const Eigen::Vector3d ab = b - a, ac = c - a, along = best.point - a;
-  const double d00 = ab.squaredNorm(), d01 = ab.dot(ac), d11 = ac.squaredNorm();
-  const double d20 = along.dot(ab), d21 = along.dot(ac);
-  const double area = d00 * d11 - d01 * d01;
-  const double second = area > 0 ? (d11 * d20 - d01 * d21) / area : 0;
-  const double third = area > 0 ? (d00 * d21 - d01 * d20) / area : 0;
-  return {best.triangle->id, {1 - second - third, second, third}, std::sqrt(best.squared)};
+  return {best.triangle->id,
+          {1 - best.second - best.third, best.second, best.third},
+          std::sqrt(best.squared)};
 }
 
 }  // namespace cleave

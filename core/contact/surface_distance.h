@@ -63,6 +63,7 @@ class SurfaceDistance {
     Eigen::Vector3d point;
     Eigen::Vector3d normal;
     const Triangle* triangle = nullptr;
+    double second = 0, third = 0;  // weights of those corners
   };
 
   int32_t Build(int32_t begin, int32_t end);

@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "core/base/counter_rng.h"
+#include "core/contact/surface_distance.h"
 #include "tests/unit/core/contact/test_surfaces.h"
 
 namespace cleave {
@@ -144,6 +146,46 @@ TEST(SignedDistance, OnAVertexTheNormalStillPointsOut) {
   const SignedDistance at = surface.At({1, 1, 1});
   EXPECT_EQ(at.value, 0);
   EXPECT_LT((at.normal - Vector3d(1, 1, 1).normalized()).norm(), 1e-12);
+}
+
+// Three points on a line through the origin, at these multiples of `along`.
+SurfaceDistance Sliver(const Vector3d& along, const std::array<double, 3>& places) {
+  std::vector<Vec3> vertices;
+  for (const double place : places)
+    vertices.push_back({place * along[0], place * along[1], place * along[2]});
+  return SurfaceDistance(vertices, {{0, 1, 2}});
+}
+
+TEST(SurfaceDistance, OfATriangleWithoutAreaIsThatOfItsLongestSide) {
+  const Vector3d along(0.1, 0.7, -0.3);
+  for (const std::array<double, 3>& places :
+       {std::array<double, 3>{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {0, 0, 2}, {0, 2, 0}, {0, 2, 2}}) {
+    const SurfaceDistance surface = Sliver(along, places);
+    for (const double at : {-0.5, 0.3, 0.9, 1.1, 1.7, 2.5}) {
+      const Vector3d point = at * along + 3 * along.unitOrthogonal();
+      const double over = at < 0 ? at : std::max(at - 2, 0.0);  // the end
+      const double distance = std::hypot(3, over * along.norm());
+      EXPECT_NEAR(std::abs(surface.At(point).value), distance, 1e-12);
+      EXPECT_NEAR(surface.ClosestPoint(point).distance, distance, 1e-12);
+    }
+  }
+}
+
+TEST(SurfaceDistance, WeightsLieBetweenTheCornersOfAnyTriangle) {
+  for (uint64_t k = 0; k < 200; ++k) {
+    const Vector3d along = RandomPoint(k, 1);
+    const std::array<double, 3> places = {RandomPoint(1000 + k, 1)[0], RandomPoint(1000 + k, 1)[1],
+                                          RandomPoint(1000 + k, 1)[2]};
+    const Vector3d point = RandomPoint(2000 + k, 1);
+    const SurfacePoint closest = Sliver(along, places).ClosestPoint(point);
+    Vector3d there = Vector3d::Zero();
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_GE(closest.weights[i], -1e-12);
+      EXPECT_LE(closest.weights[i], 1 + 1e-12);
+      there += closest.weights[i] * places[i] * along;
+    }
+    EXPECT_NEAR((point - there).norm(), closest.distance, 1e-12);
+  }
 }
 
 }  // namespace
