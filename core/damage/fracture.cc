@@ -49,8 +49,7 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
     if (strengths_.tensile[edge] == 0) {
       pending_.push_back(edge);
     } else {
-      min_threshold_ = std::min(min_threshold_, Weakest(edge));
-      min_kappa_ = std::min(min_kappa_, strengths_.kappa[edge]);
+      LowerBounds(edge);
     }
   }
   BreakPending({}, {});
@@ -59,18 +58,21 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
 
 void EdgeFracture::LowerThresholds(std::span<const int32_t> edges) {
   for (const int32_t edge : edges) {
-    if (broken_[static_cast<size_t>(edge)] != 0) continue;
-    min_threshold_ = std::min(min_threshold_, Weakest(edge));
-    min_kappa_ = std::min(min_kappa_, strengths_.kappa[edge]);
+    if (broken_[static_cast<size_t>(edge)] == 0) LowerBounds(edge);
   }
 }
 
 void EdgeFracture::UpdateThresholds() {
   min_threshold_ = kUnbreakable;
+  min_kappa_ = kFullStrength;
   for (size_t edge = 0; edge < broken_.size(); ++edge) {
-    if (broken_[edge] == 0)
-      min_threshold_ = std::min(min_threshold_, Weakest(static_cast<int32_t>(edge)));
+    if (broken_[edge] == 0) LowerBounds(static_cast<int32_t>(edge));
   }
+}
+
+void EdgeFracture::LowerBounds(int32_t edge) {
+  min_threshold_ = std::min(min_threshold_, Weakest(edge));
+  min_kappa_ = std::min(min_kappa_, strengths_.kappa[edge]);
 }
 
 double EdgeFracture::Weakest(int32_t edge) const {

@@ -166,6 +166,8 @@ class EdgeFracture {
 
   // The smallest strength of an edge, Pa.
   double Weakest(int32_t edge) const;
+  // Lowers the bounds of strengths to those of an edge.
+  void LowerBounds(int32_t edge);
   // Sets `loads_`; returns the largest Frobenius norm of an upright tet's stress.
   double WeighTets(std::span<const Vec3> positions, Stress effective_stress);
   // Makes ductile tets hot that may fail by strain; returns the largest exhaustion of a live one.

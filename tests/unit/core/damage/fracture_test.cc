@@ -141,6 +141,24 @@ TEST_F(ReferenceTet, BelowEveryThresholdReportsABound) {
   EXPECT_NEAR(result.max_ratio, kStress[0].norm() / 1e4, 1e-15);
 }
 
+TEST_F(ReferenceTet, FailsByStrainAtTheKappaThatItWasToldOf) {
+  thresholds_.fill(1e9);
+  std::array<double, 6> kappa;
+  kappa.fill(1);
+  EdgeStrengths strengths(Broadcast<double>::PerItem(thresholds_.data()));
+  strengths.kappa = Broadcast<double>::PerItem(kappa.data());
+  EdgeFracture fracture(mesh_, incidence_, strengths, {});
+  const std::vector<int32_t> records = {0};
+  const std::vector<PlasticTet> tets = {{Eigen::Matrix3d::Identity(), 0.75}};
+  const PlasticTets plastic{records, tets};
+  EXPECT_THAT(fracture.BreakPass(kPositions, kStress, &plastic).broken_edges, IsEmpty());
+  kappa.fill(0.5);
+  fracture.UpdateThresholds();
+  const PassResult result = fracture.BreakPass(kPositions, kStress, &plastic);
+  EXPECT_EQ(result.broken_edges.size(), 6u);
+  EXPECT_EQ(result.max_ratio, 1.5);
+}
+
 TEST_F(ReferenceTet, NanStressBreaksNothing) {
   thresholds_.fill(1);
   const std::vector<Eigen::Matrix3d> stress = {
