@@ -51,8 +51,9 @@ class FragmentContact final : public NodeTerm {
  private:
   using Vector = Eigen::Vector3d;
 
+  // Without gaps between its members: it is saved as it lies in memory, and so is Pair.
   struct Spring {
-    int32_t edge;
+    int64_t edge;
     double length;     // m, l
     double stiffness;  // N/m
   };

@@ -143,6 +143,26 @@ TEST(FragmentContact, ABrokenEdgePushesOnceItIsShorterThanItWas) {
   EXPECT_GT(term.AddForces(stretched(-0.3), forces), energy);
 }
 
+// What an earlier call may have left where the next ones keep their locals.
+[[gnu::noinline]] void LeaveBehind(int byte) {
+  volatile unsigned char left[4096];
+  for (volatile unsigned char& at : left) at = static_cast<unsigned char>(byte);
+}
+
+TEST(FragmentContact, SavesTheSameBytesWhateverLayInMemory) {
+  const auto saved = [](int byte) {
+    Fixture f(0, 0.2);
+    const int32_t edge = 0;
+    LeaveBehind(byte);
+    f.term().EdgesBroke({&edge, 1}, f.state.displacements);
+    std::string bytes;
+    ByteWriter out(bytes);
+    f.term().Save(out);
+    return bytes;
+  };
+  EXPECT_EQ(saved(0), saved(0x5a));
+}
+
 TEST(FragmentContact, OnePieceKeepsNoPairs) {
   const TetMesh mesh = KuhnBox({3, 3, 3}, {1, 1, 1});
   Scene scene = TightScene(1e4, 0.3, 1000, kStep);
