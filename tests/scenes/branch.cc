@@ -78,4 +78,30 @@ Metrics MeasureBranch(const Demonstration& demonstration, const Incidence& incid
   return metrics;
 }
 
+std::vector<Criterion> BranchCriteria() {
+  return {
+      {"Damp, it gives way at less; dry, it splinters",
+       {"dry", "damp"},
+       {{"peak force, damp over dry", Ratio(Of("damp", "peak_force"), Of("dry", "peak_force")),
+         Relation::kAtMost, 0.8},
+        {"length of dry splinters, diameters", Of("dry", "splinter_length"), Relation::kAtLeast,
+         0.5},
+        {"length of splinters, dry beyond damp, diameters",
+         Difference(Of("dry", "splinter_length"), Of("damp", "splinter_length")), Relation::kAbove,
+         0}}},
+      {"Without fibres the crack goes straight across",
+       {"dry", "dry-iso"},
+       {{"length of splinters, over that with fibres",
+         Ratio(Of("dry-iso", "splinter_length"), Of("dry", "splinter_length")), Relation::kAtLeast,
+         0.7}},
+       true},
+      {.text = "Damp, it crumbles into more pieces",
+       .variants = {"dry", "damp"},
+       .conditions = {{"pieces, damp over dry", Ratio(Of("damp", "pieces"), Of("dry", "pieces")),
+                       Relation::kAtLeast, 1.5}},
+       .share = kHalf,
+       .full_size = true},
+  };
+}
+
 }  // namespace cleave

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_BRANCH_H_
 #define CLEAVE_TESTS_SCENES_BRANCH_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -13,6 +15,8 @@ absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
 // splinter_length: axial extent of a fracture over the diameter, the mean over fractures by area.
 Metrics MeasureBranch(const Demonstration& demonstration, const Incidence& incidence,
                       const Run& run);
+
+std::vector<Criterion> BranchCriteria();
 
 }  // namespace cleave
 

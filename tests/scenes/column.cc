@@ -77,4 +77,32 @@ Metrics MeasureColumn(const Demonstration& demonstration, const Incidence& incid
   return metrics;
 }
 
+std::vector<Criterion> ColumnCriteria() {
+  return {
+      {"It breaks in two along its sheet",
+       {"sheet"},
+       {{"pieces", Of("sheet", "pieces"), Relation::kAtMost, 2},
+        {"pieces", Of("sheet", "pieces"), Relation::kAtLeast, 2},
+        {"90th percentile of the crack's distance from the sheet, cells",
+         Of("sheet", "crack_distance"), Relation::kAtMost, 1.5},
+        {"lift of the sheet's edges", Of("sheet", "lift"), Relation::kAtLeast, 5}}},
+      {"Breaking adds no unknowns",
+       {"sheet"},
+       {{"unknowns, last frame over first",
+         Ratio(Of("sheet", "unknowns_last"), Of("sheet", "unknowns_first")), Relation::kAtMost, 1},
+        {"unknowns, last frame over first",
+         Ratio(Of("sheet", "unknowns_last"), Of("sheet", "unknowns_first")), Relation::kAtLeast,
+         1}},
+       false,
+       kAll},
+      {"Without a map it breaks elsewhere",
+       {"plain"},
+       {{"90th percentile of the crack's distance from the sheet, cells of full size",
+         [](const Trial& trial) {
+           return trial.Get("plain", "crack_distance") * trial.setting.coarseness;
+         },
+         Relation::kAbove, 5}}},
+  };
+}
+
 }  // namespace cleave

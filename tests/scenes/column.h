@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_COLUMN_H_
 #define CLEAVE_TESTS_SCENES_COLUMN_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -16,6 +18,8 @@ absl::StatusOr<Demonstration> MakeColumn(const Setting& setting);
 // frame, by stage.
 Metrics MeasureColumn(const Demonstration& demonstration, const Incidence& incidence,
                       const Run& run);
+
+std::vector<Criterion> ColumnCriteria();
 
 }  // namespace cleave
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "core/base/status.h"
 #include "core/base/stop_flag.h"
 #include "core/mesh/mesh_check.h"
@@ -124,16 +125,25 @@ absl::StatusOr<Outcome> Measured(Demonstration demonstration,
   return outcome;
 }
 
-absl::StatusOr<Outcome> Demonstrate(const std::string& name, const Setting& setting, int threads) {
+absl::StatusOr<const DemonstrationKind*> FindDemonstration(absl::string_view name) {
+  std::vector<std::string> names;
   for (const DemonstrationKind& kind : DemonstrationKinds()) {
-    if (kind.name != name) continue;
-    if (std::find(kind.variants.begin(), kind.variants.end(), setting.variant) ==
-        kind.variants.end())
-      return absl::NotFoundError(absl::StrCat(name, " has no variant ", setting.variant));
-    CLEAVE_ASSIGN_OR_RETURN(Demonstration demonstration, kind.make(setting));
-    return Measured(std::move(demonstration), kind.measure, threads);
+    if (kind.name == name) return &kind;
+    names.push_back(kind.name);
   }
-  return absl::NotFoundError(absl::StrCat("no demonstration is called ", name));
+  return absl::NotFoundError(absl::StrCat("no demonstration is called ", name,
+                                          "; there are: ", absl::StrJoin(names, ", ")));
+}
+
+absl::StatusOr<Outcome> Demonstrate(const std::string& name, const Setting& setting, int threads) {
+  CLEAVE_ASSIGN_OR_RETURN(const DemonstrationKind* kind, FindDemonstration(name));
+  if (std::find(kind->variants.begin(), kind->variants.end(), setting.variant) ==
+      kind->variants.end()) {
+    return absl::NotFoundError(absl::StrCat(name, " has no variant ", setting.variant,
+                                            "; there are: ", absl::StrJoin(kind->variants, ", ")));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(Demonstration demonstration, kind->make(setting));
+  return Measured(std::move(demonstration), kind->measure, threads);
 }
 
 }  // namespace cleave

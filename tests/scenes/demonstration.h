@@ -2,33 +2,24 @@
 #define CLEAVE_TESTS_SCENES_DEMONSTRATION_H_
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "core/base/vec3.h"
 #include "core/mesh/incidence.h"
-#include "core/mesh/procedural_shapes.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
 #include "core/simulation/simulation.h"
 #include "core/stream/frame.h"
+#include "tests/scenes/criteria.h"
 
 // The paper's demonstrations, each defined once: for tests, the scene runner and pictures.
 // Magnitudes are Cleave's own; what is claimed are orderings and geometry.
 
 namespace cleave {
-
-// Which of a demonstration's bodies.
-struct Setting {
-  std::string variant = {};  // "iso", "fibre30" ...; each lists its own
-  uint32_t seed = 1;         // of mesh and impurities
-  MeshLayout layout = MeshLayout::kUnstructured;
-  double coarseness = 1;  // cells this many times as long as at full size
-};
 
 // What is to be simulated, and what its metrics need to know of it.
 struct Demonstration {
@@ -61,9 +52,6 @@ struct Run {
 // a scene or mesh that Cleave refuses, naming every fault; what the simulation returns.
 absl::StatusOr<Run> RunDemonstration(const Demonstration& demonstration, int threads = 1);
 
-// Named numbers, as the scene runner prints them.
-using Metrics = std::map<std::string, double>;
-
 // What every run has: counts of pieces, dust, broken edges, frames of first fracture and
 // separation, peak force, lift where there is a map, A(a) where there are fibres, seconds a frame.
 Metrics CommonMetrics(const Demonstration& demonstration, const Incidence& incidence,
@@ -72,13 +60,18 @@ Metrics CommonMetrics(const Demonstration& demonstration, const Incidence& incid
 // A demonstration by name.
 struct DemonstrationKind {
   std::string name;   // of the runner, tests and pictures
+  std::string title;  // what is seen
   std::string paper;  // the figure or section
   std::vector<std::string> variants;
   absl::StatusOr<Demonstration> (*make)(const Setting&);
   // Those of the demonstration's own, besides the common ones.
   Metrics (*measure)(const Demonstration&, const Incidence&, const Run&);
+  std::vector<Criterion> criteria;
+  std::vector<std::string> pictured = {};  // variants of the gallery; empty: all of the criteria
 };
 std::span<const DemonstrationKind> DemonstrationKinds();
+// NotFound, with the names that there are.
+absl::StatusOr<const DemonstrationKind*> FindDemonstration(absl::string_view name);
 
 // Runs and measures. Errors: those of RunDemonstration.
 struct Outcome {

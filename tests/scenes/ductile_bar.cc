@@ -147,4 +147,51 @@ Metrics MeasureDuctileBar(const Demonstration& demonstration, const Incidence& i
   return metrics;
 }
 
+std::vector<Criterion> DuctileBarCriteria() {
+  // Nothing where a bar did not come to it: elongations are -1 then.
+  const auto ratio = [](const std::string& variant, const std::string& metric) -> Value {
+    return [=](const Trial& trial) {
+      const double upper = trial.Get(variant, metric), lower = trial.Get("gold", metric);
+      return upper > 0 && lower > 0 ? upper / lower : 0;
+    };
+  };
+  const auto farther = [&](const std::string& variant) -> std::vector<Condition> {
+    return {{"elongation at first fracture, over gold", ratio(variant, "elongation_at_fracture"),
+             Relation::kAtLeast, 1.15},
+            {"elongation at separation, over gold", ratio(variant, "elongation_at_separation"),
+             Relation::kAtLeast, 1.15},
+            {"plastic strain of the neck, over gold", ratio(variant, "strain_of_neck"),
+             Relation::kAbove, 1},
+            {"plastic strain of the bar, over gold", ratio(variant, "strain_of_bar"),
+             Relation::kAbove, 1}};
+  };
+  const auto away = [&](const std::string& metric) -> Value {
+    return
+        [value = ratio("off", metric)](const Trial& trial) { return std::abs(value(trial) - 1); };
+  };
+  return {
+      {"The alloy stretches farther before it breaks", {"gold", "alloy"}, farther("alloy")},
+      {"Its neck is longer and thinner",
+       {"gold", "alloy"},
+       {{"smallest cross-section, over gold", ratio("alloy", "neck_area"), Relation::kBelow, 0.8},
+        {"length of the neck beyond that of gold, m",
+         Difference(Of("alloy", "neck_length"), Of("gold", "neck_length")), Relation::kAbove, 0}},
+       false,
+       kHalf},
+      {"With the impurity off it stretches no farther",
+       {"gold", "off"},
+       farther("off"),
+       true,
+       kAll},
+      {"With the impurity off it is gold",
+       {"gold", "off"},
+       {{"ratio of elongations at first fracture, from 1", away("elongation_at_fracture"),
+         Relation::kAtMost, 0.02},
+        {"ratio of elongations at separation, from 1", away("elongation_at_separation"),
+         Relation::kAtMost, 0.02}},
+       false,
+       kAll},
+  };
+}
+
 }  // namespace cleave

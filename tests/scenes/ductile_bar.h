@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_DUCTILE_BAR_H_
 #define CLEAVE_TESTS_SCENES_DUCTILE_BAR_H_
 
+#include <vector>
+
 #include "absl/strings/string_view.h"
 #include "tests/scenes/demonstration.h"
 
@@ -21,6 +23,8 @@ absl::StatusOr<Demonstration> MakeDuctileBarOf(TetMesh mesh, absl::string_view v
 // m.
 Metrics MeasureDuctileBar(const Demonstration& demonstration, const Incidence& incidence,
                           const Run& run);
+
+std::vector<Criterion> DuctileBarCriteria();
 
 }  // namespace cleave
 

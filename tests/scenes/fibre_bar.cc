@@ -6,6 +6,7 @@
 #include "core/base/status.h"
 #include "core/mesh/procedural.h"
 #include "tests/metrics/crack_surface.h"
+#include "tests/metrics/statistics.h"
 #include "tests/scenes/scene_parts.h"
 
 namespace cleave {
@@ -74,6 +75,40 @@ Metrics MeasureFibreBar(const Demonstration& demonstration, const Incidence& inc
       TraceAngle(crack, {0, 0, 1}, 3 * demonstration.cell_size, demonstration.fibres[0]);
   metrics["crack_center_x"] = CrackCenter(crack)[0];
   return metrics;
+}
+
+std::vector<Criterion> FibreBarCriteria() {
+  const auto crossing = [](const std::string& kind, const std::string& angle) -> Condition {
+    return {absl::StrCat("A(a) over that without fibres, at ", angle, " degrees"),
+            Ratio(Of(absl::StrCat(kind, angle), "fibre_crossing_smooth"),
+                  Of(absl::StrCat("iso", angle), "fibre_crossing_smooth")),
+            Relation::kAtMost, 0.6};
+  };
+  return {
+      {"The more its fibres lie across the pull, the less it holds",
+       {"fibre0", "fibre30", "fibre60", "fibre90"},
+       {{"rank correlation of angle and peak force",
+         [](const Trial& trial) {
+           std::vector<double> peaks;
+           for (const char* variant : {"fibre0", "fibre30", "fibre60", "fibre90"})
+             peaks.push_back(trial.Get(variant, "peak_force"));
+           return Spearman(std::vector<double>{0, 30, 60, 90}, peaks);
+         },
+         Relation::kAtMost, -0.9}}},
+      {"It breaks along its fibres",
+       {"fibre30", "iso30", "fibre60", "iso60"},
+       {crossing("fibre", "30"), crossing("fibre", "60")}},
+      {"Fibres that only stiffen do not lead a crack, at 30 degrees",
+       {"plain30", "iso30"},
+       {crossing("plain", "30")},
+       true,
+       kHalf},
+      {"Fibres that only stiffen do not lead a crack, at 60 degrees",
+       {"plain60", "iso60"},
+       {crossing("plain", "60")},
+       true,
+       kHalf},
+  };
 }
 
 }  // namespace cleave

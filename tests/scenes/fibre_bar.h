@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_FIBRE_BAR_H_
 #define CLEAVE_TESTS_SCENES_FIBRE_BAR_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -13,6 +15,10 @@ namespace cleave {
 absl::StatusOr<Demonstration> MakeFibreBar(const Setting& setting);
 Metrics MeasureFibreBar(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
+
+// A(a) counts by smoothed normals: those of single facets scatter so much that the criterion's 0.6
+// at 60 degrees lies below what a crack exactly along the fibres has.
+std::vector<Criterion> FibreBarCriteria();
 
 }  // namespace cleave
 

@@ -80,7 +80,23 @@ absl::StatusOr<Demonstration> MakeLocality(const Setting& setting) {
   return made;
 }
 
-Metrics MeasureLocality(const Demonstration&, const Incidence&, const Run&) { return {}; }
+Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& incidence,
+                        const Run& run) {
+  if (demonstration.scene.impurities->potency == 0) return {};
+  Demonstration pure = demonstration;
+  pure.scene.impurities->potency = 0;
+  const absl::StatusOr<Run> without = RunDemonstration(pure);
+  if (!without.ok()) return {};
+  const LocalityOfChange change = CompareRuns(demonstration, incidence, *without, run);
+  Metrics metrics;
+  metrics["first_difference"] = static_cast<double>(change.first_difference);
+  metrics["new_broken_edges"] = static_cast<double>(change.new_broken_edges);
+  metrics["own_edges"] = change.broken_edges_are_the_nodes_own ? 1 : 0;
+  metrics["largest_change"] = change.largest;
+  metrics["share_within_three_rings"] = change.share_within_three_rings;
+  if (change.largest > 0) metrics["change_elsewhere"] = change.largest_elsewhere / change.largest;
+  return metrics;
+}
 
 LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence& incidence,
                              const Run& without, const Run& with) {
@@ -135,6 +151,27 @@ LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence
   }
   change.share_within_three_rings = all > 0 ? near / all : 0;
   return change;
+}
+
+std::vector<Criterion> LocalityCriteria() {
+  return {
+      {"Until an edge of the node breaks, nothing differs in any bit",
+       {"with"},
+       {{"first frame that differs", Of("with", "first_difference"), Relation::kAbove, 2},
+        {"edges that differ", Of("with", "new_broken_edges"), Relation::kAbove, 0},
+        {"1 where all of them are the node's own", Of("with", "own_edges"), Relation::kAtLeast, 1}},
+       false,
+       kAll},
+      {"What changes then lies round the node",
+       {"with"},
+       {{"largest change of velocity, m/s", Of("with", "largest_change"), Relation::kAbove, 0},
+        {"share within three edges of the node", Of("with", "share_within_three_rings"),
+         Relation::kAbove, 0.8},
+        {"largest change in the other slab, of the largest", Of("with", "change_elsewhere"),
+         Relation::kBelow, 1e-6}},
+       false,
+       kAll},
+  };
 }
 
 }  // namespace cleave

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_LOCALITY_H_
 #define CLEAVE_TESTS_SCENES_LOCALITY_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -8,6 +10,9 @@ namespace cleave {
 // Two slabs side by side in one mesh, pulled alike. Variants: "without" impurities; "with" one, on
 // a single node in the middle of the first slab.
 absl::StatusOr<Demonstration> MakeLocality(const Setting& setting);
+
+// Of "with", which it holds against a run without: the numbers of LocalityOfChange; own_edges 1 or
+// 0, change_elsewhere over the largest.
 Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
 
@@ -24,6 +29,8 @@ struct LocalityOfChange {
 };
 LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence& incidence,
                              const Run& without, const Run& with);
+
+std::vector<Criterion> LocalityCriteria();
 
 }  // namespace cleave
 

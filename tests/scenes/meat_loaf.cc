@@ -123,4 +123,26 @@ Metrics MeasureMeatLoaf(const Demonstration& demonstration, const Incidence& inc
   return metrics;
 }
 
+std::vector<Criterion> MeatLoafCriteria() {
+  // The shell splits before the core, at less stretch and in more places.
+  const auto shell_first = [](const std::string& variant) -> std::vector<Condition> {
+    return {
+        {"frame in which bread first breaks", Of(variant, "first_bread"), Relation::kAtLeast, 0},
+        {"frames from first broken meat to first broken bread",
+         Difference(Of(variant, "first_bread"), Of(variant, "first_meat")), Relation::kBelow, 0},
+        {"median stretch at failure, meat over bread", Of(variant, "stretch_ratio"),
+         Relation::kAtLeast, 1.3},
+        {"broken share, bread beyond meat",
+         Difference(Of(variant, "broken_bread"), Of(variant, "broken_meat")), Relation::kAbove, 0}};
+  };
+  return {
+      {"The shell of bread splits before the core of meat", {"loaf"}, shell_first("loaf")},
+      {"Of meat throughout, the outer part does not split first",
+       {"meat"},
+       shell_first("meat"),
+       true,
+       kAll},
+  };
+}
+
 }  // namespace cleave

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_MEAT_LOAF_H_
 #define CLEAVE_TESTS_SCENES_MEAT_LOAF_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -15,6 +17,8 @@ absl::StatusOr<Demonstration> MakeMeatLoaf(const Setting& setting);
 // the pull, and stretch_ratio_all, of all; broken_bread, broken_meat: shares at the end.
 Metrics MeasureMeatLoaf(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
+
+std::vector<Criterion> MeatLoafCriteria();
 
 }  // namespace cleave
 

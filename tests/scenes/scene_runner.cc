@@ -6,22 +6,30 @@
 //                [--azimuth DEGREES] [--elevation DEGREES] [--frame N]
 //                [--change FILE.png]: of locality with, where it parts from locality without
 //
-// scene_runner alone lists names and variants.
+//   scene_runner NAME --judge < LINES: holds such lines against the scene's criteria
+//   scene_runner --list: scenes, variants and criteria as JSON
+//
+// scene_runner alone lists names and variants. scene_json.h has the forms.
 
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <iostream>
+#include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
 #include "client/io/preview/impurity_picture.h"
 #include "client/io/preview/preview.h"
 #include "client/io/preview/scene_look.h"
 #include "tests/scenes/demonstration.h"
 #include "tests/scenes/locality.h"
+#include "tests/scenes/scene_json.h"
 
 namespace cleave {
 namespace {
@@ -48,13 +56,20 @@ int List() {
   return 2;
 }
 
-void PrintLine(const Arguments& arguments, const Metrics& metrics) {
-  std::printf(R"({"scene":"%s","variant":"%s","seed":%u,"layout":"%s","coarseness":%g)",
-              arguments.name.c_str(), arguments.setting.variant.c_str(), arguments.setting.seed,
-              arguments.setting.layout == MeshLayout::kJitteredLattice ? "lattice" : "unstructured",
-              arguments.setting.coarseness);
-  for (const auto& [name, value] : metrics) std::printf(R"(,"%s":%.6g)", name.c_str(), value);
-  std::printf("}\n");
+int Fail(const absl::Status& status) {
+  std::fprintf(stderr, "%s\n", std::string(status.message()).c_str());
+  return 1;
+}
+
+// Holds runs, read from standard input, against the criteria of their scene.
+int JudgeRuns(const std::string& name) {
+  const auto kind = FindDemonstration(name);
+  if (!kind.ok()) return Fail(kind.status());
+  const std::string lines{std::istreambuf_iterator<char>(std::cin), {}};
+  const auto trials = ReadTrials(**kind, lines);
+  if (!trials.ok()) return Fail(trials.status());
+  std::printf("%s\n", FindingsJson(**kind, *trials).c_str());
+  return 0;
 }
 
 // Where the bodies of S6 begin to part: changes of velocity over four decades.
@@ -117,58 +132,67 @@ absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   return absl::OkStatus();
 }
 
+// NotFound for an option that there is not; InvalidArgument for a value that it cannot have.
+absl::Status ReadOption(const std::string& option, const std::string& value, Arguments& arguments) {
+  const std::map<std::string, std::string*> words = {{"--picture", &arguments.picture},
+                                                     {"--sheet", &arguments.sheet},
+                                                     {"--change", &arguments.change}};
+  if (const auto word = words.find(option); word != words.end()) {
+    *word->second = value;
+    return value.empty() ? absl::InvalidArgumentError(absl::StrCat(option, " needs a file"))
+                         : absl::OkStatus();
+  }
+  bool read = false;
+  double number = 0;
+  if (option == "--seed")
+    read = absl::SimpleAtoi(value, &arguments.setting.seed);
+  else if (option == "--coarseness")
+    read = absl::SimpleAtod(value, &arguments.setting.coarseness) &&
+           arguments.setting.coarseness >= 0.1 && arguments.setting.coarseness <= 100;
+  else if (option == "--threads")
+    read = absl::SimpleAtoi(value, &arguments.threads) && arguments.threads >= 1;
+  else if (option == "--frame")
+    read = absl::SimpleAtoi(value, &arguments.frame);
+  else if (option == "--width")
+    read = absl::SimpleAtoi(value, &arguments.width);
+  else if (option == "--azimuth" && (read = absl::SimpleAtod(value, &number)))
+    arguments.camera.azimuth = number;
+  else if (option == "--elevation" && (read = absl::SimpleAtod(value, &number)))
+    arguments.camera.elevation = number;
+  else if (option != "--azimuth" && option != "--elevation")
+    return absl::NotFoundError(absl::StrCat("there is no option ", option));
+  return read ? absl::OkStatus()
+              : absl::InvalidArgumentError(absl::StrCat(option, " cannot be \"", value, "\""));
+}
+
 int Main(int argc, char** argv) {
+  if (argc == 2 && std::string(argv[1]) == "--list") {
+    std::printf("%s\n", KindsJson().c_str());
+    return 0;
+  }
   if (argc < 3) return List();
   Arguments arguments;
   arguments.name = argv[1];
+  if (std::string(argv[2]) == "--judge") return JudgeRuns(arguments.name);
   arguments.setting.variant = argv[2];
   for (int i = 3; i < argc; ++i) {
     const std::string option = argv[i];
-    const char* value = i + 1 < argc ? argv[i + 1] : "";
     if (option == "--lattice") {
       arguments.setting.layout = MeshLayout::kJitteredLattice;
-      continue;
-    }
-    if (option == "--strain") {
+    } else if (option == "--strain") {
       arguments.strain = true;
-      continue;
+    } else {
+      const std::string value = ++i < argc ? argv[i] : "";
+      if (absl::Status read = ReadOption(option, value, arguments); !read.ok()) return Fail(read);
     }
-    if (option == "--seed")
-      arguments.setting.seed = static_cast<uint32_t>(std::atoi(value));
-    else if (option == "--coarseness")
-      arguments.setting.coarseness = std::atof(value);
-    else if (option == "--threads")
-      arguments.threads = std::atoi(value);
-    else if (option == "--picture")
-      arguments.picture = value;
-    else if (option == "--sheet")
-      arguments.sheet = value;
-    else if (option == "--change")
-      arguments.change = value;
-    else if (option == "--azimuth")
-      arguments.camera.azimuth = std::atof(value);
-    else if (option == "--elevation")
-      arguments.camera.elevation = std::atof(value);
-    else if (option == "--frame")
-      arguments.frame = std::atoi(value);
-    else if (option == "--width")
-      arguments.width = std::atoi(value);
-    else
-      return List();
-    ++i;
   }
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<size_t>(arguments.threads));
   const auto outcome = Demonstrate(arguments.name, arguments.setting, arguments.threads);
-  if (!outcome.ok()) {
-    std::fprintf(stderr, "%s\n", outcome.status().ToString().c_str());
-    return 1;
-  }
-  PrintLine(arguments, outcome->metrics);
-  if (absl::Status drawn = Draw(arguments, *outcome); !drawn.ok()) {
-    std::fprintf(stderr, "%s\n", drawn.ToString().c_str());
-    return 1;
-  }
+  if (!outcome.ok()) return Fail(outcome.status());
+  // The line says that all is done, pictures too.
+  if (absl::Status drawn = Draw(arguments, *outcome); !drawn.ok()) return Fail(drawn);
+  std::printf("%s\n", RunJson(arguments.name, arguments.setting, outcome->metrics).c_str());
   return 0;
 }
 

@@ -108,4 +108,45 @@ Metrics MeasureSlabTrio(const Demonstration& demonstration, const Incidence& inc
   return metrics;
 }
 
+std::vector<Criterion> SlabTrioCriteria() {
+  const std::vector<Condition> led = {
+      {"lift of the map's edges", Of("impure", "lift"), Relation::kAtLeast, 3}};
+  const auto follows = [](const std::string& variant) -> std::vector<Condition> {
+    return {{"median angle of trace and fibres, degrees", Of(variant, "trace_angle"),
+             Relation::kAtMost, 20}};
+  };
+  return {
+      {"Isotropic, it breaks in a thin line at the pulled end, where the strain was largest",
+       {"iso"},
+       {{"centre of the crack from the pulled end, of the length", Of("iso", "center_from_pulled"),
+         Relation::kAtMost, 0.2},
+        {"thickness of the trace, of the length", Of("iso", "trace_thickness"), Relation::kAtMost,
+         0.1},
+        {"median angle of trace and 35 degrees", Of("iso", "trace_angle"), Relation::kAtLeast, 40},
+        {"largest strain to the first crack, cells", Of("iso", "strain_to_crack"),
+         Relation::kAtMost, 3}}},
+      {"With fibres, it breaks along them", {"aniso"}, follows("aniso")},
+      {"With fibres turned by 90 degrees, it does not", {"turned"}, follows("turned"), true, kHalf},
+      {"Impure, it breaks where its map is", {"impure"}, led, false, kHalf},
+      {"Dealt out to other nodes, the same potencies do not lead it",
+       {"shuffled"},
+       {{"lift of the map's edges", Of("shuffled", "lift"), Relation::kAtLeast, 3}},
+       true,
+       kHalf},
+      {"Isotropic, it takes no notice of the map",
+       {"iso"},
+       {{"lift of the map's edges", Of("iso", "lift"), Relation::kBelow, 1.25}},
+       false,
+       kHalf},
+      {"Impure, it breaks into more pieces than either",
+       {"iso", "aniso", "impure"},
+       {{"pieces, impure over isotropic", Ratio(Of("impure", "pieces"), Of("iso", "pieces")),
+         Relation::kAtLeast, 1.5},
+        {"pieces, impure over fibrous", Ratio(Of("impure", "pieces"), Of("aniso", "pieces")),
+         Relation::kAtLeast, 1.5}},
+       false,
+       kHalf},
+  };
+}
+
 }  // namespace cleave

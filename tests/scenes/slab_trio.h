@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_SLAB_TRIO_H_
 #define CLEAVE_TESTS_SCENES_SLAB_TRIO_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -16,6 +18,8 @@ absl::StatusOr<Demonstration> MakeSlabTrio(const Setting& setting);
 // edge of it, in cells.
 Metrics MeasureSlabTrio(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
+
+std::vector<Criterion> SlabTrioCriteria();
 
 }  // namespace cleave
 

@@ -129,4 +129,36 @@ Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incide
   return metrics;
 }
 
+std::vector<Criterion> SteakCriteria() {
+  const auto follows = [](const std::string& variant) -> std::vector<Condition> {
+    return {{"A(a) over that without fibres",
+             Ratio(Of(variant, "fibre_crossing_smooth"), Of("iso", "fibre_crossing_smooth")),
+             Relation::kAtMost, 0.7}};
+  };
+  // As many edges cross the tear as cells have room in it.
+  const auto bridges = [](const std::string& variant) -> std::vector<Condition> {
+    return {{"strands across the tear, as of cells of full size",
+             [variant](const Trial& trial) {
+               const double coarseness = trial.setting.coarseness;
+               return trial.Get(variant, "bridging") * coarseness * coarseness;
+             },
+             Relation::kAtLeast, 20}};
+  };
+  return {
+      {"It tears along its fibres", {"meat", "iso"}, follows("meat")},
+      {"With fibres turned by 90 degrees it does not",
+       {"turned", "iso"},
+       follows("turned"),
+       true,
+       kAll},
+      {"Strands bridge the tear", {"meat"}, bridges("meat")},
+      {"With fibres along the tear none do", {"turned"}, bridges("turned"), true, kAll},
+      {"Without fibres none do", {"iso"}, bridges("iso"), true, kAll},
+      {"A piece dangles",
+       {"meat"},
+       {{"least of its boundary that a piece hangs by", Of("meat", "smallest_hold"),
+         Relation::kAtMost, 0.1}}},
+  };
+}
+
 }  // namespace cleave

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_STEAK_H_
 #define CLEAVE_TESTS_SCENES_STEAK_H_
 
+#include <vector>
+
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -15,6 +17,10 @@ absl::StatusOr<Demonstration> MakeSteak(const Setting& setting);
 // dangled.
 Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
                      const Run& run);
+
+// A(a) counts by smoothed normals: those of single facets scatter so much that a crack along the
+// fibres has about 0.3, and one across them 0.75.
+std::vector<Criterion> SteakCriteria();
 
 }  // namespace cleave
 
