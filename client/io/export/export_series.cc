@@ -9,50 +9,18 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
+#include "client/io/export/obj.h"
 #include "client/io/export/ply.h"
 #include "client/io/export/volume_cells.h"
 #include "client/io/export/vtu.h"
+#include "client/io/series/data_key.h"
 #include "client/io/series/moved_points.h"
 #include "client/io/series/surface_sequence.h"
 #include "client/io/series/write_aside.h"
-#include "core/base/state_hash.h"
 #include "core/base/status.h"
 
 namespace cleave {
 namespace {
-
-// Raised whenever the files made from the same frames change.
-constexpr int kExportVersion = 1;
-
-template <typename T>
-void Absorb(const std::vector<T>& values, StateHash& hash) {
-  const uint64_t count = values.size();
-  hash.Update(&count, sizeof(count));
-  hash.Update(values.data(), count * sizeof(T));
-}
-
-// Names the data that a file is made of. Piece ids and velocities depend on the frames before, so
-// each key goes into the next one.
-class Key {
- public:
-  Key(const TetMesh& mesh, absl::string_view format) {
-    hash_.Update(&kExportVersion, sizeof(kExportVersion));
-    hash_.Update(format.data(), format.size());
-    Absorb(mesh.rest_positions, hash_);
-    Absorb(mesh.tets, hash_);
-    Absorb(mesh.tet_regions, hash_);
-  }
-  void Add(const Frame& frame) {
-    hash_.Update(&frame.frame, sizeof(frame.frame));
-    hash_.Update(&frame.time, sizeof(frame.time));
-    Absorb(frame.positions, hash_);
-    Absorb(frame.broken_edges, hash_);
-  }
-  std::string Comment() const { return absl::StrFormat("cleave %016x", hash_.Digest()); }
-
- private:
-  StateHash hash_;
-};
 
 std::vector<int32_t> PointPieces(const ShownSurface& surface) {
   std::vector<int32_t> pieces(surface.points.size(), -1);
@@ -204,7 +172,7 @@ class SeriesWriter {
 
   const ExportOptions& options_;
   const std::string ending_;
-  Key key_;
+  DataKey key_;
   std::vector<PvdEntry> entries_;
   ExportResult result_;
 };
@@ -245,6 +213,30 @@ absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSour
   };
   SeriesWriter writer(mesh, options, "ply", "ply");
   CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));
+  return writer.result();
+}
+
+absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSource& frames,
+                                            const ExportOptions& options,
+                                            const Progress& progress) {
+  SurfaceSequence sequence(mesh, {});
+  const SurfaceMaterials materials(mesh);
+  const ObjOptions look{"", options.name, absl::StrCat(options.name, ".mtl"), true};
+  Format format;
+  format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
+  format.encode = [&](const Frame&, const std::string& comment) {
+    std::vector<Vec3> rest_points;
+    for (const SurfacePoint& point : sequence.topology().points) rest_points.push_back(point.rest);
+    ObjOptions of_frame = look;
+    of_frame.comment = comment;
+    return EncodeObj(sequence.surface(), rest_points, materials, of_frame);
+  };
+  SeriesWriter writer(mesh, options, "obj", absl::StrCat("obj ", options.name));
+  CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));
+  CLEAVE_RETURN_IF_ERROR(WriteAside(options.folder.empty()
+                                        ? look.material_file
+                                        : absl::StrCat(options.folder, "/", look.material_file),
+                                    EncodeMtl(materials)));
   return writer.result();
 }
 

@@ -24,7 +24,7 @@ struct ExportOptions {
 struct ExportResult {
   int64_t written = 0;     // files
   int64_t kept = 0;        // files that stood already, made from the same data
-  std::string collection;  // path of the .pvd; empty for PLY
+  std::string collection;  // path of the .pvd; empty for PLY and OBJ
 };
 
 // Writes a file a frame and a ParaView collection of them.
@@ -45,6 +45,10 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
 
 // The same as PLY files of the surface (ply.h); there is no collection.
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
+                                            const ExportOptions& options, const Progress& progress);
+
+// The same as Wavefront OBJ files (obj.h) and NAME.mtl, their materials.
+absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSource& frames,
                                             const ExportOptions& options, const Progress& progress);
 
 }  // namespace cleave

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "client/io/preview/sampling.h"
-#include "client/io/preview/surface_normals.h"
 #include "client/io/series/palette.h"
+#include "client/io/series/surface_normals.h"
 
 namespace cleave {
 namespace {

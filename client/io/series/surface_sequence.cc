@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
-#include "absl/strings/str_cat.h"
-#include "core/base/faults.h"
+#include "client/io/series/frame_check.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/surface/extract_surface.h"
@@ -17,6 +17,8 @@ namespace cleave {
 namespace {
 
 using Eigen::Matrix3f;
+
+constexpr double kBeforeAll = -std::numeric_limits<double>::infinity();
 
 // Edge vectors of a tet from its first corner, as columns.
 Eigen::Matrix3d EdgeMatrix(const std::vector<Vec3>& positions, const std::array<int32_t, 4>& tet) {
@@ -54,39 +56,9 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
   });
 }
 
-absl::Status SurfaceSequence::Check(const Frame& frame) const {
-  Faults faults;
-  if (frame.positions.size() != mesh_.rest_positions.size()) {
-    faults.Error("positions", absl::StrCat("frame ", frame.frame, " has ", frame.positions.size(),
-                                           " nodes, the mesh ", mesh_.rest_positions.size()));
-  }
-  for (size_t i = 0; i < frame.positions.size(); ++i) {
-    const Vec3& p = frame.positions[i];
-    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) continue;
-    faults.Error(absl::StrCat("positions[", i, "]"),
-                 absl::StrCat("is not finite in frame ", frame.frame));
-    break;
-  }
-  if (!std::isfinite(frame.time) || (started_ && frame.time < shown_.time)) {
-    faults.Error("time", absl::StrCat(frame.time, " s in frame ", frame.frame, " is before ",
-                                      shown_.time, " s or not finite"));
-  }
-  int64_t last = -1;
-  for (size_t i = 0; i < frame.broken_edges.size(); ++i) {
-    const int32_t edge = frame.broken_edges[i];
-    if (edge <= last || edge >= incidence_.edge_count()) {
-      faults.Error(absl::StrCat("broken_edges[", i, "]"),
-                   absl::StrCat(edge, " is not ascending or not below the mesh's ",
-                                incidence_.edge_count(), " edges in frame ", frame.frame));
-      break;
-    }
-    last = edge;
-  }
-  return faults.ToStatus();
-}
-
 absl::Status SurfaceSequence::Advance(const Frame& frame) {
-  CLEAVE_RETURN_IF_ERROR(Check(frame));
+  CLEAVE_RETURN_IF_ERROR(
+      CheckFrame(frame, mesh_, incidence_.edge_count(), started_ ? shown_.time : kBeforeAll));
   changed_ = !started_ || frame.broken_edges != broken_edges_;
   if (changed_) TakeApart(frame);
   moved_.Advance(topology_, changed_, frame.positions, frame.time, options_.velocities);

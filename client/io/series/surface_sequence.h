@@ -54,7 +54,6 @@ class SurfaceSequence {
   std::vector<float> TetStrains(const std::vector<Vec3>& positions) const;
 
  private:
-  absl::Status Check(const Frame& frame) const;
   void TakeApart(const Frame& frame);
   void NamePieces();
   void FindStrains(const std::vector<Vec3>& positions);

@@ -174,6 +174,18 @@ TEST_F(ExportSeriesTest, PlySeriesWritesAFileAFrame) {
   EXPECT_EQ(WritePlySeries(mesh_, FlyingTip(mesh_), options_, nullptr)->kept, 5);
 }
 
+TEST_F(ExportSeriesTest, ObjSeriesWritesAFileAFrameAndTheirMaterials) {
+  const auto result = WriteObjSeries(mesh_, FlyingTip(mesh_), options_, nullptr);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->written, 5);
+  EXPECT_THAT(ReadWhole("run_000000.obj"), HasSubstr("mtllib run.mtl\no run\n"));
+  EXPECT_THAT(ReadWhole("run_000000.obj"), ::testing::Not(HasSubstr("usemtl inside_")));
+  EXPECT_THAT(ReadWhole("run_000004.obj"), HasSubstr("usemtl inside_6\n"));
+  EXPECT_THAT(ReadWhole("run_000004.obj"), HasSubstr("g piece_1\n"));
+  EXPECT_THAT(ReadWhole("run.mtl"), HasSubstr("newmtl inside_6\n"));
+  EXPECT_EQ(WriteObjSeries(mesh_, FlyingTip(mesh_), options_, nullptr)->kept, 5);
+}
+
 TEST_F(ExportSeriesTest, BadFramesAreAStatusAndWhatWasWrittenStays) {
   FrameSource none;
   EXPECT_EQ(WriteVtuSeries(mesh_, none, VtuContent::kSurface, options_, nullptr).status().code(),

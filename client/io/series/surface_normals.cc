@@ -1,4 +1,4 @@
-#include "client/io/preview/surface_normals.h"
+#include "client/io/series/surface_normals.h"
 
 #include <Eigen/Geometry>
 #include <cstddef>

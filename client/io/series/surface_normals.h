@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
+#ifndef CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
+#define CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
 
 #include <Eigen/Core>
 #include <array>
@@ -17,4 +17,4 @@ std::vector<std::array<Eigen::Vector3f, 3>> CornerNormals(const ShownSurface& su
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_SURFACE_NORMALS_H_
+#endif  // CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
