@@ -1,12 +1,15 @@
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
 #include "client/cli/run_results.h"
+#include "client/io/bake/bake.h"
 #include "client/io/export/export_series.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/status.h"
@@ -25,7 +28,17 @@ struct Options {
   int64_t first = 0;
   int64_t last = std::numeric_limits<int64_t>::max();
   int64_t stride = 1;
+  std::optional<double> rate;
+  bool velocities = false;
 };
+
+const std::map<std::string, BakeFormat>& BakeFormats() {
+  static const auto* formats = new std::map<std::string, BakeFormat>{{"bake-pc2", BakeFormat::kPc2},
+                                                                     {"bake-mdd", BakeFormat::kMdd},
+                                                                     {"glb", BakeFormat::kGlb},
+                                                                     {"usda", BakeFormat::kUsda}};
+  return *formats;
+}
 
 // exports/vtu beside the recording, unless said otherwise.
 std::string TargetFolder(const Options& options) {
@@ -47,16 +60,38 @@ absl::Status ExportPlot(const Options& options) {
   return absl::OkStatus();
 }
 
+absl::Status ExportBake(Program& program, const Options& options, const RecordedRun& run,
+                        const FrameSource& frames) {
+  BakeOptions target;
+  target.folder = TargetFolder(options);
+  target.name = options.name;
+  target.format = BakeFormats().at(options.format);
+  target.playback_rate = options.rate;
+  target.velocities = options.velocities;
+  PreviewOptions look;
+  CLEAVE_RETURN_IF_ERROR(ApplyRunLook(options.run, run.mesh, look));
+  target.up = look.camera.up.value_or(Vec3{0, 0, 1});
+  CLEAVE_ASSIGN_OR_RETURN(
+      const BakeResult result,
+      WriteBake(run.mesh, frames, target, ShowingProgress("baking frames", program.interrupt)));
+  PrintResult(result.path);
+  for (const std::string& path : result.also) PrintResult(path);
+  PrintNote(absl::StrCat(result.written, " frames written, ", result.kept, " were there already"));
+  return absl::OkStatus();
+}
+
 absl::Status Export(Program& program, const Options& options) {
   if (options.format == "plot") return ExportPlot(options);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
                           SelectFrames(run.recording, options.first, options.last, options.stride));
+  if (BakeFormats().count(options.format) > 0) return ExportBake(program, options, run, frames);
   const ExportOptions target{TargetFolder(options), options.name};
   const Progress progress = ShowingProgress("exporting frames", program.interrupt);
-  const auto result = options.format == "ply"
-                          ? WritePlySeries(run.mesh, frames, target, progress)
+  const auto result = options.format == "ply" ? WritePlySeries(run.mesh, frames, target, progress)
+                      : options.format == "obj"
+                          ? WriteObjSeries(run.mesh, frames, target, progress)
                           : WriteVtuSeries(run.mesh, frames,
                                            options.format == "vtu-volume" ? VtuContent::kVolume
                                                                           : VtuContent::kSurface,
@@ -70,16 +105,19 @@ absl::Status Export(Program& program, const Options& options) {
 }  // namespace
 
 void AddExport(CLI::App& app, Program& program) {
-  CLI::App* verb =
-      app.add_subcommand("export", "Write recorded frames as VTU or PLY files, or a plot");
+  CLI::App* verb = app.add_subcommand("export", "Write recorded frames for other tools, or a plot");
   auto options = std::make_shared<Options>();
   verb->add_option("run", options->run, "Folder of a run, or a .clv file")
       ->required()
       ->type_name("RUN");
-  verb->add_option("--format", options->format,
-                   "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply: surfaces; "
-                   "plot: force and broken edges over time as SVG")
-      ->check(CLI::IsMember({"vtu", "vtu-volume", "ply", "plot"}))
+  verb->add_option(
+          "--format", options->format,
+          "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply, obj: surfaces; "
+          "bake-pc2, bake-mdd: one OBJ of the pieces and a cache of its points, for Blender; "
+          "glb: the same as animated glTF; usda: as USD text (not yet opened by a USD "
+          "program); plot: force and broken edges over time as SVG")
+      ->check(CLI::IsMember(
+          {"vtu", "vtu-volume", "ply", "obj", "bake-pc2", "bake-mdd", "glb", "usda", "plot"}))
       ->capture_default_str();
   verb->add_option("--to", options->to, "Folder for the files; default: RUN/FORMAT")
       ->type_name("DIR");
@@ -99,12 +137,21 @@ void AddExport(CLI::App& app, Program& program) {
   verb->add_option("--stride", options->stride, "Every N-th frame")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  verb->add_option("--rate", options->rate,
+                   "For bake-mdd, glb and usda: frames a second when played; default: as simulated")
+      ->check(CLI::Range(1e-3, 1e5))
+      ->type_name("FPS");
+  verb->add_flag("--velocities", options->velocities,
+                 "For bake-pc2, bake-mdd and glb: velocities of the points as well");
   verb->footer(
-      "Prints the .pvd (open it in ParaView) or the folder. Files that are there already from the\n"
-      "same frames are kept, so an export that was cut goes on.\n\n"
+      "Prints the .pvd (open it in ParaView), the folder, or the baked files. Files that are "
+      "there\n"
+      "already from the same frames are kept, so an export that was cut goes on.\n\n"
       "Examples:\n"
       "  cleave export out/bar\n"
-      "  cleave export out/bar --format ply --first 10 --last 10 --to now\n");
+      "  cleave export out/bar --format ply --first 10 --last 10 --to now\n"
+      "  cleave export out/bar --format bake-pc2\n"
+      "  cleave export out/bar --format glb --rate 24\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return Export(shared, *options); };
   });
