@@ -7,6 +7,7 @@
 
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
+#include "core/surface/surface_ids.h"
 
 namespace cleave {
 
@@ -22,20 +23,24 @@ struct SurfacePoint {
 };
 
 // The visible surface of a broken mesh, independent of the motion of its nodes: closed, oriented,
-// every edge between exactly two triangles, pieces sharing no points. It depends on the mesh and
-// its broken edges only, so client and server derive the same one.
+// every edge between exactly two triangles, pieces sharing no points. What it holds depends on the
+// mesh and its broken edges only, so client and server derive the same one, and so do those who
+// followed a run and those who join it: the same ids with the same records. Only places in the
+// arrays follow from how the edges came to break.
 struct SurfaceTopology {
+  // One a point.
   std::vector<SurfacePoint> points;
-  std::vector<std::array<int32_t, 3>> triangles;  // point ids, counter-clockwise from outside
+  std::vector<SurfaceId> point_ids;  // surface_ids.h
 
   // One a triangle.
-  std::vector<int32_t> fragments;  // fragments.h
-  std::vector<int32_t> tets;       // the tet behind it, which knows its region
-  std::vector<uint8_t> inside;     // 1: opened by a crack; 0: the body's own surface
+  std::vector<std::array<int32_t, 3>>
+      triangles;                        // indices of points, counter-clockwise from outside
+  std::vector<SurfaceId> triangle_ids;  // surface_ids.h
+  std::vector<int32_t> nodes;           // one on its side, which knows its piece
+  std::vector<int32_t> tets;            // the tet behind it, which knows its region
+  std::vector<uint8_t> inside;          // 1: opened by a crack; 0: the body's own surface
 
-  std::vector<EdgeMask> tet_masks;      // of the whole mesh
-  std::vector<int32_t> node_fragments;  // of the whole mesh; -1 for a node of no tet
-  int32_t fragment_count = 0;
+  std::vector<EdgeMask> tet_masks;  // of the whole mesh
 };
 
 }  // namespace cleave

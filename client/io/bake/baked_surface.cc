@@ -9,30 +9,33 @@
 #include "client/io/series/frame_check.h"
 #include "core/base/status.h"
 #include "core/mesh/tet_geometry.h"
-#include "core/surface/extract_surface.h"
 #include "core/surface/faces.h"
+#include "core/surface/fragments.h"
+#include "core/surface/visible_surface.h"
 
 namespace cleave {
 namespace {
 
-// The pieces of a topology, and for each fragment its place among them.
-std::vector<BakedPiece> FindPieces(const TetMesh& mesh, const SurfaceTopology& topology,
+// The pieces, and for each fragment its place among them.
+std::vector<BakedPiece> FindPieces(const TetMesh& mesh, const Fragments& found,
                                    std::vector<int32_t>& fragment_pieces) {
-  std::vector<BakedPiece> fragments(static_cast<size_t>(topology.fragment_count));
-  for (size_t node = topology.node_fragments.size(); node-- > 0;) {
-    const int32_t fragment = topology.node_fragments[node];
+  std::vector<BakedPiece> fragments(static_cast<size_t>(found.count()));
+  for (size_t fragment = 0; fragment < fragments.size(); ++fragment) {
+    fragments[fragment].nodes = found.node_counts[fragment];
+    fragments[fragment].volume = found.volumes[fragment];
+  }
+  for (size_t node = found.node_fragments.size(); node-- > 0;) {
+    const int32_t fragment = found.node_fragments[node];
     if (fragment < 0) continue;
     fragments[static_cast<size_t>(fragment)].smallest_node = static_cast<int32_t>(node);
-    ++fragments[static_cast<size_t>(fragment)].nodes;
   }
   for (int64_t tet = 0; tet < mesh.tet_count(); ++tet) {
     const double quarter = SignedVolume(CornersOf(mesh, tet)) / 4;
     for (const int32_t node : mesh.tets[static_cast<size_t>(tet)]) {
-      const int32_t fragment = topology.node_fragments[static_cast<size_t>(node)];
-      BakedPiece& piece = fragments[static_cast<size_t>(fragment)];
-      piece.volume += quarter;
+      const int32_t fragment = found.node_fragments[static_cast<size_t>(node)];
       for (size_t k = 0; k < 3; ++k) {
-        piece.center[k] += quarter * mesh.rest_positions[static_cast<size_t>(node)][k];
+        fragments[static_cast<size_t>(fragment)].center[k] +=
+            quarter * mesh.rest_positions[static_cast<size_t>(node)][k];
       }
     }
   }
@@ -72,10 +75,12 @@ BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence,
       ExtractSurface(mesh, incidence, BuildFaces(mesh), broken_edges, SurfaceOptions{});
   const SurfaceTopology& topology = surface.topology;
   std::vector<int32_t> fragment_pieces;
-  surface.pieces = FindPieces(mesh, topology, fragment_pieces);
+  const Fragments fragments = FindFragments(mesh, incidence, broken_edges);
+  surface.pieces = FindPieces(mesh, fragments, fragment_pieces);
   surface.point_pieces.assign(topology.points.size(), -1);
   for (size_t i = 0; i < topology.triangles.size(); ++i) {
-    const int32_t piece = fragment_pieces[static_cast<size_t>(topology.fragments[i])];
+    const int32_t fragment = fragments.node_fragments[static_cast<size_t>(topology.nodes[i])];
+    const int32_t piece = fragment_pieces[static_cast<size_t>(fragment)];
     surface.triangle_pieces.push_back(piece);
     surface.triangle_regions.push_back(mesh.region_of(topology.tets[i]));
     for (const int32_t point : topology.triangles[i]) {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 
 #include "client/io/series/frame_check.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/surface/extract_surface.h"
 
 namespace cleave {
 namespace {
@@ -61,10 +61,10 @@ absl::Status SurfaceSequence::Advance(const Frame& frame) {
       CheckFrame(frame, mesh_, incidence_.edge_count(), started_ ? shown_.time : kBeforeAll));
   changed_ = !started_ || frame.broken_edges != broken_edges_;
   if (changed_) TakeApart(frame);
-  moved_.Advance(topology_, changed_, frame.positions, frame.time, options_.velocities);
+  moved_.Advance(topology(), changed_, frame.positions, frame.time, options_.velocities);
   shown_.points = moved_.points();
   shown_.velocities = moved_.velocities();
-  if (options_.displacements) shown_.displacements = Displacements(topology_, shown_.points);
+  if (options_.displacements) shown_.displacements = Displacements(topology(), shown_.points);
   if (options_.strains) FindStrains(frame.positions);
   shown_.frame = frame.frame;
   shown_.time = frame.time;
@@ -74,50 +74,32 @@ absl::Status SurfaceSequence::Advance(const Frame& frame) {
 }
 
 void SurfaceSequence::TakeApart(const Frame& frame) {
+  const bool goes_on =
+      started_ && std::includes(frame.broken_edges.begin(), frame.broken_edges.end(),
+                                broken_edges_.begin(), broken_edges_.end());
+  if (!goes_on) {
+    broken_edges_.clear();
+    surface_.emplace(mesh_, incidence_, faces_, SurfaceOptions{});
+    pieces_.emplace(mesh_, incidence_);
+  }
+  std::vector<int32_t> edges;
+  std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(), broken_edges_.begin(),
+                      broken_edges_.end(), std::back_inserter(edges));
   broken_edges_ = frame.broken_edges;
-  topology_ = ExtractSurface(mesh_, incidence_, faces_, broken_edges_, SurfaceOptions{});
-  NamePieces();
-  const size_t triangles = topology_.triangles.size();
-  shown_.triangles = topology_.triangles;
-  shown_.inside = topology_.inside;
+  surface_->Break(edges);
+  pieces_->Break(edges);
+  node_pieces_.resize(mesh_.rest_positions.size());
+  for (size_t node = 0; node < node_pieces_.size(); ++node)
+    node_pieces_[node] = pieces_->piece_of(static_cast<int32_t>(node));
+  const SurfaceTopology& topology = surface_->topology();
+  const size_t triangles = topology.triangles.size();
+  shown_.triangles = topology.triangles;
+  shown_.inside = topology.inside;
   shown_.pieces.resize(triangles);
   shown_.regions.resize(triangles);
-  std::vector<int32_t> fragment_pieces(static_cast<size_t>(topology_.fragment_count));
-  for (size_t node = 0; node < node_pieces_.size(); ++node) {
-    const int32_t fragment = topology_.node_fragments[node];
-    if (fragment >= 0) fragment_pieces[static_cast<size_t>(fragment)] = node_pieces_[node];
-  }
   for (size_t i = 0; i < triangles; ++i) {
-    shown_.pieces[i] = fragment_pieces[static_cast<size_t>(topology_.fragments[i])];
-    shown_.regions[i] = mesh_.region_of(topology_.tets[i]);
-  }
-}
-
-void SurfaceSequence::NamePieces() {
-  const auto fragments = static_cast<size_t>(topology_.fragment_count);
-  std::vector<int32_t> smallest(fragments, -1);
-  std::vector<int32_t> sizes(fragments, 0);
-  for (size_t node = 0; node < topology_.node_fragments.size(); ++node) {
-    const int32_t fragment = topology_.node_fragments[node];
-    if (fragment < 0) continue;
-    if (smallest[static_cast<size_t>(fragment)] < 0) {
-      smallest[static_cast<size_t>(fragment)] = static_cast<int32_t>(node);
-    }
-    ++sizes[static_cast<size_t>(fragment)];
-  }
-  std::vector<size_t> by_size(fragments);
-  for (size_t i = 0; i < fragments; ++i) by_size[i] = i;
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
-  for (const size_t fragment : by_size) {
-    pieces_by_smallest_node_.emplace(smallest[fragment],
-                                     static_cast<int32_t>(pieces_by_smallest_node_.size()));
-  }
-  node_pieces_.resize(topology_.node_fragments.size());
-  for (size_t node = 0; node < node_pieces_.size(); ++node) {
-    const int32_t fragment = topology_.node_fragments[node];
-    node_pieces_[node] =
-        fragment < 0 ? -1 : pieces_by_smallest_node_.at(smallest[static_cast<size_t>(fragment)]);
+    shown_.pieces[i] = node_pieces_[static_cast<size_t>(topology.nodes[i])];
+    shown_.regions[i] = mesh_.region_of(topology.tets[i]);
   }
 }
 
@@ -146,16 +128,16 @@ void SurfaceSequence::FindStrains(const std::vector<Vec3>& positions) {
       float volume = 0;
       for (const int32_t tet : incidence_.node_tets[node]) {
         const auto t = static_cast<size_t>(tet);
-        if (Separated(topology_.tet_masks[t])) continue;
+        if (Separated(topology().tet_masks[t])) continue;
         sum += rest_volumes_[t] * tet_strains[t];
         volume += rest_volumes_[t];
       }
       node_strains[static_cast<size_t>(node)] = volume > 0 ? sum / volume : 0.0f;
     }
   });
-  shown_.strains.resize(topology_.points.size());
-  for (size_t i = 0; i < topology_.points.size(); ++i) {
-    const SurfacePoint& point = topology_.points[i];
+  shown_.strains.resize(topology().points.size());
+  for (size_t i = 0; i < topology().points.size(); ++i) {
+    const SurfacePoint& point = topology().points[i];
     float sum = 0;
     float count = 0;
     for (size_t k = 0; k < point.node_count; ++k) {

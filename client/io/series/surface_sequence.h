@@ -2,17 +2,18 @@
 #define CLEAVE_CLIENT_IO_SERIES_SURFACE_SEQUENCE_H_
 
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "client/io/series/moved_points.h"
 #include "client/io/series/shown_surface.h"
+#include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
 #include "core/surface/faces.h"
-#include "core/surface/surface_topology.h"
+#include "core/surface/visible_surface.h"
 
 namespace cleave {
 
@@ -23,9 +24,9 @@ struct SequenceOptions {
   bool velocities = false;
 };
 
-// Turns the frames of one run, given in order, into the surfaces to be seen. The surface is taken
-// apart anew only where edges broke since the last frame; else its points just move. Not
-// thread-safe; loops run on the caller's TBB arena.
+// Turns the frames of one run, given in order, into the surfaces to be seen. Only what is round
+// edges that broke since the last frame is made anew; else points just move. Not thread-safe; loops
+// run on the caller's TBB arena.
 class SurfaceSequence {
  public:
   // `mesh` must outlive this object and have passed CheckMesh.
@@ -37,14 +38,14 @@ class SurfaceSequence {
   // InvalidArgument for a frame that is not this mesh's or not finite; then nothing changed.
   absl::Status Advance(const Frame& frame);
 
-  // The surface of the last frame. Piece ids count up from 0 in the order in which pieces appear,
-  // of those of one frame the one with more nodes first; a piece that breaks hands its id to the
-  // part with its smallest node. Strains are means over the live tets at the nodes (0 where there
-  // is none); velocities are means since the frame before, 0 in the first.
+  // The surface of the last frame. Piece ids are those of NamedPieces: they follow from the frames
+  // that were given, and are the simulation's own where none was left out. Strains are means over
+  // the live tets at the nodes (0 where there is none); velocities are means since the frame
+  // before, 0 in the first.
   const ShownSurface& surface() const { return shown_; }
-  const SurfaceTopology& topology() const { return topology_; }
+  const SurfaceTopology& topology() const { return surface_->topology(); }
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
-  int64_t piece_count() const { return topology_.fragment_count; }
+  int64_t piece_count() const { return pieces_->count(); }
   const Incidence& incidence() const { return incidence_; }
   // Whether the topology is another one than a frame before.
   bool changed() const { return changed_; }
@@ -55,7 +56,6 @@ class SurfaceSequence {
 
  private:
   void TakeApart(const Frame& frame);
-  void NamePieces();
   void FindStrains(const std::vector<Vec3>& positions);
 
   const TetMesh& mesh_;
@@ -69,8 +69,8 @@ class SurfaceSequence {
   bool started_ = false;
   bool changed_ = false;
   std::vector<int32_t> broken_edges_;
-  SurfaceTopology topology_;
-  std::map<int32_t, int32_t> pieces_by_smallest_node_;
+  std::optional<VisibleSurface> surface_;
+  std::optional<NamedPieces> pieces_;
   std::vector<int32_t> node_pieces_;
   ShownSurface shown_;
 };

@@ -1,14 +1,17 @@
 // Prints what a step costs and where the time goes: what fibres, impurities and precision cost
-// against the plain body, the column of the method's paper, pieces asleep against awake, and boxes
-// of growing size that are pulled until they break. `cleave_bench ratios`, `cleave_bench column`,
-// `cleave_bench sleep` and `cleave_bench [tets...]` print one of the tables.
+// against the plain body, the column of the method's paper, pieces asleep against awake, surfaces
+// that are followed against those taken anew, and boxes of growing size that are pulled until they
+// break. `cleave_bench ratios`, `cleave_bench column`, `cleave_bench sleep`, `cleave_bench surface`
+// and `cleave_bench [tets...]` print one of the tables.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -19,8 +22,8 @@
 #include "core/mesh/procedural.h"
 #include "core/simulation/simulation.h"
 #include "core/stream/frame_encoder.h"
-#include "core/surface/extract_surface.h"
 #include "core/surface/point_motion.h"
+#include "core/surface/visible_surface.h"
 #include "tests/bench/core/step_cost.h"
 #include "tests/bench/pulled_bar.h"
 
@@ -75,7 +78,9 @@ absl::Status Measure(const TetMesh& mesh, int threads, const Phase& phase) {
 
   const Incidence incidence = BuildIncidence(mesh);
   const Faces faces = BuildFaces(mesh);
+  VisibleSurface surface(mesh, incidence, faces, {});
   PointMotion motion(mesh, incidence);
+  std::vector<int32_t> broken;
   StreamParameters parameters;
   parameters.mesh_sha256 = std::string(32, '\0');
   parameters.edge_count = static_cast<uint64_t>(incidence.edge_count());
@@ -103,10 +108,14 @@ absl::Status Measure(const TetMesh& mesh, int threads, const Phase& phase) {
     sum.fragments = report.fragments;
     {
       ScopedTimer timer(surface_seconds);
-      const SurfaceTopology surface =
-          ExtractSurface(mesh, incidence, faces, simulation->broken_edges(), SurfaceOptions{});
+      std::vector<int32_t> edges;
+      const std::vector<int32_t>& all = simulation->broken_edges();
+      std::set_difference(all.begin(), all.end(), broken.begin(), broken.end(),
+                          std::back_inserter(edges));
+      broken = all;
+      surface.Break(edges);
       std::vector<Vec3> points;
-      motion.Move(surface, simulation->positions(), points);
+      motion.Move(surface.topology(), simulation->positions(), points);
     }
     ScopedTimer timer(encode_seconds);
     Frame frame;
@@ -161,12 +170,14 @@ absl::Status Run(const std::vector<std::string>& arguments) {
   if (table == "ratios") return PrintRatios();
   if (table == "column") return PrintColumn();
   if (table == "sleep") return PrintSleep();
+  if (table == "surface") return PrintSurface();
   std::vector<double> sizes;
   for (const std::string& size : arguments) sizes.push_back(std::atof(size.c_str()));
   if (!sizes.empty()) return PrintGrowth(sizes);
   CLEAVE_RETURN_IF_ERROR(PrintRatios());
   CLEAVE_RETURN_IF_ERROR(PrintColumn());
   CLEAVE_RETURN_IF_ERROR(PrintSleep());
+  CLEAVE_RETURN_IF_ERROR(PrintSurface());
   return PrintGrowth({10e3, 40e3, 250e3});
 }
 

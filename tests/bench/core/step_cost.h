@@ -39,6 +39,8 @@ absl::StatusOr<std::vector<StepCost>> MeasureSteps(const TetMesh& mesh,
 absl::Status PrintRatios();
 // Prints steps of blocks that rest, asleep against awake.
 absl::Status PrintSleep();
+// Prints what the surface and the pieces cost while a bar is cut, followed and found anew.
+absl::Status PrintSurface();
 // Prints the step of 1/60 s of a column of 40 thousand tets, one Newton iteration, with its split.
 absl::Status PrintColumn();
 

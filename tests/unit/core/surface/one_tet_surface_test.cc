@@ -38,7 +38,7 @@ class OneTetSurface : public ::testing::Test {
 
 TEST_F(OneTetSurface, HasTheReferenceQuadsAndFragments) {
   for (size_t mask = 0; mask < 64; ++mask) {
-    const SurfaceTopology surface = tet_.Extract(EdgesOf(mask));
+    const BrokenSurface surface = tet_.Extract(EdgesOf(mask));
     EXPECT_EQ(surface.fragment_count, kFragments[mask]) << "mask " << mask;
     EXPECT_EQ(std::count(surface.inside.begin(), surface.inside.end(), 1), 4 * kCutQuads[mask])
         << "mask " << mask;
@@ -55,7 +55,7 @@ TEST_F(OneTetSurface, IsClosedAroundEachFragment) {
 
 TEST_F(OneTetSurface, GivesEachVertexAQuarterOfTheVolume) {
   for (size_t mask = 0; mask < 64; ++mask) {
-    const SurfaceTopology surface = tet_.Extract(EdgesOf(mask));
+    const BrokenSurface surface = tet_.Extract(EdgesOf(mask));
     std::vector<double> expected(static_cast<size_t>(surface.fragment_count), 0.0);
     for (const int32_t fragment : surface.node_fragments)
       expected[static_cast<size_t>(fragment)] += volume_ / 4;
@@ -67,7 +67,7 @@ TEST_F(OneTetSurface, GivesEachVertexAQuarterOfTheVolume) {
 
 TEST_F(OneTetSurface, KeepsItsVolumeWhenSmooth) {
   for (size_t mask = 0; mask < 64; ++mask) {
-    const SurfaceTopology surface = tet_.Extract(EdgesOf(mask), true);
+    const BrokenSurface surface = tet_.Extract(EdgesOf(mask), true);
     double sum = 0;
     for (const double volume : EnclosedVolumes(surface, RestPoints(surface))) {
       EXPECT_GT(volume, 0) << "mask " << mask;
@@ -79,16 +79,16 @@ TEST_F(OneTetSurface, KeepsItsVolumeWhenSmooth) {
 
 TEST_F(OneTetSurface, SmoothCutsOfOneAndTwoVerticesAreFlat) {
   // Vertex 0 cut off: the crack is the triangle of the midpoints of its edges, seen twice.
-  const SurfaceTopology one = tet_.Extract(EdgesOf(0b000111), true);
+  const BrokenSurface one = tet_.Extract(EdgesOf(0b000111), true);
   const std::vector<double> volumes = EnclosedVolumes(one, RestPoints(one));
   EXPECT_NEAR(volumes[0], volume_ / 8, 1e-15);
   // Vertices 0, 1 from 2, 3: the parallelogram of four midpoints halves the tet.
-  const SurfaceTopology two = tet_.Extract(EdgesOf(0b011110), true);
+  const BrokenSurface two = tet_.Extract(EdgesOf(0b011110), true);
   EXPECT_NEAR(EnclosedVolumes(two, RestPoints(two))[0], volume_ / 2, 1e-15);
 }
 
 TEST_F(OneTetSurface, UnbrokenIsFourTriangles) {
-  const SurfaceTopology surface = tet_.Extract({});
+  const BrokenSurface surface = tet_.Extract({});
   EXPECT_EQ(surface.triangles.size(), 4u);
   EXPECT_EQ(surface.points.size(), 4u);
 }

@@ -4,19 +4,37 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "core/base/counter_rng.h"
-#include "core/surface/extract_surface.h"
+#include "core/surface/fragments.h"
+#include "core/surface/visible_surface.h"
 
 namespace cleave {
+
+// A surface with its pieces, as FindFragments numbers them.
+struct BrokenSurface : SurfaceTopology {
+  std::vector<int32_t> fragments;  // a triangle each
+  std::vector<int32_t> node_fragments;
+  int32_t fragment_count = 0;
+};
 
 // A mesh with everything that extraction needs beside it.
 struct SurfaceCase {
   explicit SurfaceCase(TetMesh tets)
       : mesh(std::move(tets)), incidence(BuildIncidence(mesh)), faces(BuildFaces(mesh)) {}
-  SurfaceTopology Extract(const std::vector<int32_t>& broken, bool smooth = false) const {
-    return ExtractSurface(mesh, incidence, faces, broken, {.smooth = smooth});
+  BrokenSurface WithPieces(SurfaceTopology topology, const std::vector<int32_t>& broken) const {
+    BrokenSurface surface{std::move(topology), {}, {}, 0};
+    Fragments fragments = FindFragments(mesh, incidence, broken);
+    surface.fragment_count = fragments.count();
+    surface.node_fragments = std::move(fragments.node_fragments);
+    for (const int32_t node : surface.nodes)
+      surface.fragments.push_back(surface.node_fragments[static_cast<size_t>(node)]);
+    return surface;
+  }
+  BrokenSurface Extract(const std::vector<int32_t>& broken, bool smooth = false) const {
+    return WithPieces(ExtractSurface(mesh, incidence, faces, broken, {.smooth = smooth}), broken);
   }
   // Breaks each edge with the given probability.
   std::vector<int32_t> RandomEdges(uint64_t seed, double share) const {
@@ -40,7 +58,7 @@ inline std::vector<Vec3> RestPoints(const SurfaceTopology& surface) {
 }
 
 // The volume inside each fragment's triangles, m^3.
-inline std::vector<double> EnclosedVolumes(const SurfaceTopology& surface,
+inline std::vector<double> EnclosedVolumes(const BrokenSurface& surface,
                                            const std::vector<Vec3>& points) {
   std::vector<double> volumes(static_cast<size_t>(surface.fragment_count), 0.0);
   for (size_t i = 0; i < surface.triangles.size(); ++i) {
@@ -58,10 +76,16 @@ inline std::vector<double> EnclosedVolumes(const SurfaceTopology& surface,
 
 // Every directed edge lies in one triangle and its reverse in another; fragments share no points;
 // every point is in use; arrays fit.
-inline void ExpectClosedOrientedPieces(const SurfaceTopology& surface) {
+inline void ExpectClosedOrientedPieces(const BrokenSurface& surface) {
   ASSERT_EQ(surface.fragments.size(), surface.triangles.size());
   ASSERT_EQ(surface.tets.size(), surface.triangles.size());
   ASSERT_EQ(surface.inside.size(), surface.triangles.size());
+  ASSERT_EQ(surface.triangle_ids.size(), surface.triangles.size());
+  ASSERT_EQ(surface.point_ids.size(), surface.points.size());
+  using Ids = std::set<SurfaceId>;
+  ASSERT_EQ(Ids(surface.triangle_ids.begin(), surface.triangle_ids.end()).size(),
+            surface.triangles.size());
+  ASSERT_EQ(Ids(surface.point_ids.begin(), surface.point_ids.end()).size(), surface.points.size());
   std::map<std::pair<int32_t, int32_t>, int> uses;
   std::vector<int32_t> fragment_of(surface.points.size(), -1);
   for (size_t i = 0; i < surface.triangles.size(); ++i) {

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "core/surface/extract_surface.h"
+#include "core/surface/visible_surface.h"
 #include "core/surface/faces.h"
 #include "tests/unit/client/io/bake/breaking_bar.h"
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -65,6 +66,27 @@ TEST(SurfaceSequence, ABreakOpensInsideFacesAndThePiecesKeepTheirIds) {
   EXPECT_THAT(sequence.surface().pieces, ::testing::Contains(1));
   EXPECT_EQ(sequence.surface().broken_edges, 3);
   EXPECT_TRUE(CheckShownSurface(sequence.surface()).ok());
+}
+
+TEST(SurfaceSequence, APieceKeepsItsIdInItsLargerPart) {
+  // Node 0 comes off: the rest of the body stays piece 0 although its smallest node is another.
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence sequence(mesh, {});
+  Frame frame = AtRest(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  const Incidence incidence = BuildIncidence(mesh);
+  frame.broken_edges.assign(incidence.node_edges[0].begin(), incidence.node_edges[0].end());
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_THAT(sequence.node_pieces(), ElementsAre(1, 0, 0, 0, 0));
+  for (const int32_t edge : EdgesAtTip(mesh)) frame.broken_edges.push_back(edge);
+  std::sort(frame.broken_edges.begin(), frame.broken_edges.end());
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_THAT(sequence.node_pieces(), ElementsAre(1, 0, 0, 0, 2));
+  // Of an earlier frame, as of another epoch, the surface is that of its edges.
+  frame.broken_edges.clear();
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_EQ(sequence.piece_count(), 1);
+  EXPECT_THAT(sequence.surface().inside, Each(0));
 }
 
 TEST(SurfaceSequence, VelocityAndDisplacementFollowARigidMotionAlsoWhereEdgesBreak) {

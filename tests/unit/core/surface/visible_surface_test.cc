@@ -1,4 +1,4 @@
-#include "core/surface/extract_surface.h"
+#include "core/surface/visible_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ void ExpectSound(const SurfaceCase& box, const std::vector<int32_t>& broken) {
   const Fragments fragments = FindFragments(box.mesh, box.incidence, broken);
   const double total = std::accumulate(fragments.volumes.begin(), fragments.volumes.end(), 0.0);
   for (const bool smooth : {false, true}) {
-    const SurfaceTopology surface = box.Extract(broken, smooth);
+    const BrokenSurface surface = box.Extract(broken, smooth);
     ASSERT_NO_FATAL_FAILURE(ExpectClosedOrientedPieces(surface));
     ASSERT_EQ(surface.fragment_count, fragments.count());
     ASSERT_EQ(std::set<int32_t>(surface.fragments.begin(), surface.fragments.end()).size(),
@@ -40,10 +40,10 @@ void ExpectSound(const SurfaceCase& box, const std::vector<int32_t>& broken) {
   }
 }
 
-TEST(ExtractSurface, OfAnUnbrokenMeshIsItsBoundary) {
+TEST(VisibleSurface, OfAnUnbrokenMeshIsItsBoundary) {
   const SurfaceCase box(JitteredBox(4, 3, 2));
   for (const bool smooth : {false, true}) {
-    const SurfaceTopology surface = box.Extract({}, smooth);
+    const BrokenSurface surface = box.Extract({}, smooth);
     ASSERT_NO_FATAL_FAILURE(ExpectClosedOrientedPieces(surface));
     ASSERT_EQ(surface.triangles.size(), box.faces.boundary.size());
     EXPECT_EQ(surface.triangles.size(), 2u * 2 * (4 * 3 + 4 * 2 + 3 * 2));
@@ -62,7 +62,7 @@ TEST(ExtractSurface, OfAnUnbrokenMeshIsItsBoundary) {
   }
 }
 
-TEST(ExtractSurface, OfRandomBreaksIsClosedAndKeepsVolume) {
+TEST(VisibleSurface, OfRandomBreaksIsClosedAndKeepsVolume) {
   const SurfaceCase small(JitteredBox(2, 2, 1));
   for (uint64_t seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
@@ -77,7 +77,7 @@ TEST(ExtractSurface, OfRandomBreaksIsClosedAndKeepsVolume) {
   }
 }
 
-TEST(ExtractSurface, WithEveryEdgeBrokenIsACellANode) {
+TEST(VisibleSurface, WithEveryEdgeBrokenIsACellANode) {
   const SurfaceCase box(JitteredBox(3, 2, 2));
   std::vector<int32_t> all(static_cast<size_t>(box.incidence.edge_count()));
   std::iota(all.begin(), all.end(), 0);
@@ -85,7 +85,7 @@ TEST(ExtractSurface, WithEveryEdgeBrokenIsACellANode) {
   EXPECT_EQ(box.Extract(all).fragment_count, 4 * 3 * 3);
 }
 
-TEST(ExtractSurface, ClosesACrackAtItsTip) {
+TEST(VisibleSurface, ClosesACrackAtItsTip) {
   // A bar cut across its lower half: one piece, with crack faces that part from a whole tip.
   const SurfaceCase bar(JitteredBox(6, 1, 4));
   std::vector<int32_t> cut;
@@ -96,7 +96,7 @@ TEST(ExtractSurface, ClosesACrackAtItsTip) {
     if ((at[0] < 2.5) != (to[0] < 2.5) && std::max(at[2], to[2]) < 2.5) cut.push_back(edge);
   }
   ASSERT_NO_FATAL_FAILURE(ExpectSound(bar, cut));
-  const SurfaceTopology surface = bar.Extract(cut);
+  const BrokenSurface surface = bar.Extract(cut);
   EXPECT_EQ(surface.fragment_count, 1);
   EXPECT_GT(std::count(surface.inside.begin(), surface.inside.end(), 1), 0);
   bool split = false;
@@ -111,12 +111,12 @@ TEST(ExtractSurface, ClosesACrackAtItsTip) {
   EXPECT_TRUE(whole);
 }
 
-TEST(ExtractSurface, ChangesOnlyTrianglesNearACut) {
+TEST(VisibleSurface, ChangesOnlyTrianglesNearACut) {
   const SurfaceCase box(JitteredBox(8, 8, 8));
   const int32_t node = (4 * 9 + 4) * 9 + 4;  // deep inside
   std::vector<int32_t> cut;
   for (const int32_t edge : box.incidence.node_edges[node]) cut.push_back(edge);
-  const SurfaceTopology surface = box.Extract(cut);
+  const BrokenSurface surface = box.Extract(cut);
   ASSERT_NO_FATAL_FAILURE(ExpectSound(box, cut));
   EXPECT_EQ(surface.fragment_count, 2);
   // Three quads in each tet of the node, each with two sides of two triangles.
@@ -124,7 +124,7 @@ TEST(ExtractSurface, ChangesOnlyTrianglesNearACut) {
             box.faces.boundary.size() + 12 * box.incidence.node_tets[node].size());
 }
 
-TEST(ExtractSurface, OfTetsJoinedByANodeOnlyIsThatOfEach) {
+TEST(VisibleSurface, OfTetsJoinedByANodeOnlyIsThatOfEach) {
   TetMesh mesh;
   mesh.rest_positions = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
                          {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};

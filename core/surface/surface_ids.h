@@ -1,0 +1,53 @@
+#ifndef CLEAVE_CORE_SURFACE_SURFACE_IDS_H_
+#define CLEAVE_CORE_SURFACE_SURFACE_IDS_H_
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cleave {
+
+// Names a point or triangle of a visible surface by what it is: a part of the mesh and, in its low
+// byte, which of those there. Ids need no history, so seeking gives the same as reading on, and
+// they last: where a crack splits a point, the copy with the first of its nodes keeps the id; a
+// triangle keeps its own for as long as it spans the same corners, or copies of them. Points and
+// triangles are numbered apart.
+using SurfaceId = uint64_t;
+
+namespace surface_id {
+
+enum Kind : uint64_t { kNode, kEdge, kFace, kTet, kPinch, kOuter, kCrack };
+
+constexpr SurfaceId Make(Kind kind, uint64_t part, uint64_t low) {
+  return kind << 56 | part << 8 | low;
+}
+constexpr Kind KindOf(SurfaceId id) { return static_cast<Kind>(id >> 56); }
+constexpr uint64_t PartOf(SurfaceId id) { return id >> 8 & ((uint64_t{1} << 48) - 1); }
+constexpr uint64_t LowOf(SurfaceId id) { return id & 0xFF; }
+
+// Points. `first` is the first node on the copy's side, by its place in the edge, in the face as
+// the lower of its tets lists it, or in the tet. A face is 4 * tet + face of its lower tet.
+constexpr SurfaceId OfNode(int32_t node) { return Make(kNode, static_cast<uint64_t>(node), 0); }
+constexpr SurfaceId OfEdge(int32_t edge, size_t first) {
+  return Make(kEdge, static_cast<uint64_t>(edge), first);
+}
+constexpr SurfaceId OfFace(size_t face, size_t first) { return Make(kFace, face, first); }
+constexpr SurfaceId OfTet(size_t tet, size_t first) { return Make(kTet, tet, first); }
+// On the segment from a face's point to the middle of its edge i; side 0 is that of the edge's
+// smaller node.
+constexpr SurfaceId OfPinch(size_t face, size_t i, size_t side) {
+  return Make(kPinch, face, 2 * i + side);
+}
+
+// Triangles. Of a boundary face, 4 * tet + face: `corners` has bit i for corner i, 3 + i for the
+// middle between corner i and the next, 6 for the face point.
+constexpr SurfaceId OfOuter(size_t face, unsigned corners) { return Make(kOuter, face, corners); }
+// Inside a split tet: across its edge k towards the edge's end `side`; in the half at either of the
+// faces that meet there, whole (0), or parted by a pinch point into outer (1) and inner (2).
+constexpr SurfaceId OfCrack(size_t tet, size_t k, size_t side, size_t half, size_t share) {
+  return Make(kCrack, tet, k << 4 | side << 3 | half << 2 | share);
+}
+
+}  // namespace surface_id
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_SURFACE_SURFACE_IDS_H_
