@@ -1,10 +1,12 @@
 #include "client/io/bake/bake.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -24,6 +26,7 @@
 #include "core/base/faults.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
+#include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 
 namespace cleave {
@@ -68,13 +71,11 @@ class Bake {
         materials_(mesh) {}
 
   absl::StatusOr<BakeResult> Run() {
-    CLEAVE_ASSIGN_OR_RETURN(first_, frames_.read(0));
-    CLEAVE_ASSIGN_OR_RETURN(last_, frames_.read(frames_.count - 1));
-    CLEAVE_RETURN_IF_ERROR(CheckFrame(first_, mesh_, incidence_.edge_count()));
-    CLEAVE_RETURN_IF_ERROR(CheckFrame(last_, mesh_, incidence_.edge_count(), first_.time));
+    NamedPieces pieces(mesh_, incidence_);
+    CLEAVE_RETURN_IF_ERROR(NamePieces(pieces));
     timing_ = {frames_.count, first_.frame, last_.frame,
                first_.time,   last_.time,   options_.playback_rate};
-    surface_ = BakeSurface(mesh_, incidence_, last_.broken_edges);
+    surface_ = BakeSurface(mesh_, incidence_, pieces, last_.broken_edges);
     if (surface_.pieces.empty() || surface_.topology.triangles.empty()) {
       return absl::InvalidArgumentError("the mesh has no tets, so there are no pieces to bake");
     }
@@ -97,6 +98,33 @@ class Bake {
   }
 
  private:
+  // Goes through all frames, for the pieces at the end have their names from how they came about.
+  // Fills `first_` and `last_`.
+  absl::Status NamePieces(NamedPieces& pieces) {
+    for (int64_t position = 0; position < frames_.count; ++position) {
+      CLEAVE_ASSIGN_OR_RETURN(Frame frame, frames_.read(position));
+      CLEAVE_RETURN_IF_ERROR(
+          CheckFrame(frame, mesh_, incidence_.edge_count(),
+                     position > 0 ? last_.time : -std::numeric_limits<double>::infinity()));
+      std::vector<int32_t> edges;
+      std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(),
+                          last_.broken_edges.begin(), last_.broken_edges.end(),
+                          std::back_inserter(edges));
+      pieces.Break(edges);
+      if (position == 0) first_ = frame;
+      last_ = std::move(frame);
+      CLEAVE_RETURN_IF_ERROR(Show(position + 1, 1));
+    }
+    return absl::OkStatus();
+  }
+
+  // Tells of a frame gone through, of all in `passes`; Cancelled where that was the last.
+  absl::Status Show(int64_t done, int64_t passes) const {
+    if (!progress_ || progress_(done, passes * frames_.count)) return absl::OkStatus();
+    return absl::CancelledError(
+        absl::StrCat("export stopped after ", done, " of ", passes * frames_.count, " frames"));
+  }
+
   std::string PathOf(absl::string_view ending) const {
     const std::string file = absl::StrCat(options_.name, ".", ending);
     return options_.folder.empty() ? file : absl::StrCat(options_.folder, "/", file);
@@ -112,6 +140,10 @@ class Bake {
                            up[1], up[2], options_.velocities ? 1 : 0));
     key.Add(first_);
     key.Add(last_);
+    // Names of pieces stand before the first frame and depend on all.
+    Frame names;
+    names.broken_edges = surface_.point_pieces;
+    key.Add(names);
     return key;
   }
 
@@ -213,17 +245,14 @@ class Bake {
         codec->Encode(unit / frames_.count, baked, bytes);
         CLEAVE_RETURN_IF_ERROR(file.Append(bytes));
       }
-      const bool stopped = progress_ && !progress_(unit + 1, units);
+      const absl::Status shown = Show(unit + 1, codec->passes());
       const bool is_last = unit + 1 == units;
       if (unit >= mark.units && !is_last &&
-          (stopped || since_mark.Seconds() - marked > kSecondsBetweenMarks)) {
+          (!shown.ok() || since_mark.Seconds() - marked > kSecondsBetweenMarks)) {
         CLEAVE_RETURN_IF_ERROR(file.Save({start.Comment(), key.Comment(), unit + 1, 0}));
         marked = since_mark.Seconds();
       }
-      if (stopped) {
-        return absl::CancelledError(
-            absl::StrCat("export stopped after ", unit + 1, " of ", units, " frames"));
-      }
+      CLEAVE_RETURN_IF_ERROR(shown);
     }
     CLEAVE_RETURN_IF_ERROR(file.Append(codec->End()));
     const int64_t whole_bytes = file.bytes();

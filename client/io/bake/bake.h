@@ -46,10 +46,12 @@ struct BakeResult {
 //
 // One frame is in memory at a time. A file grows as FILE.part and is renamed when it is whole; a
 // call that was cut goes on where the last mark says, at most some seconds back, and a whole file
-// made from the same data is kept. The bytes are those of an unbroken call. `progress` counts
-// frames (two passes for USDA), and may be empty. Precondition: `mesh` passed CheckMesh. Errors:
-// InvalidArgument for no frames, frames of another mesh, frames without a surface, bad options or a
-// format's limits; Cancelled by `progress`; what reading frames and writing files gives.
+// made from the same data is kept. The bytes are those of an unbroken call. Pieces are called as
+// in a SurfaceSequence of the same frames. `progress` counts frames, once for the names of pieces
+// and again as they are written (USDA: twice as many), and may be empty. Precondition: `mesh`
+// passed CheckMesh. Errors: InvalidArgument for no frames, frames of another mesh, frames without a
+// surface, bad options or a format's limits; Cancelled by `progress`; what reading frames and
+// writing files gives.
 absl::StatusOr<BakeResult> WriteBake(const TetMesh& mesh, const FrameSource& frames,
                                      const BakeOptions& options, const Progress& progress);
 

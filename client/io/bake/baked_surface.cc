@@ -10,45 +10,35 @@
 #include "core/base/status.h"
 #include "core/mesh/tet_geometry.h"
 #include "core/surface/faces.h"
-#include "core/surface/fragments.h"
 #include "core/surface/visible_surface.h"
 
 namespace cleave {
 namespace {
 
-// The pieces, and for each fragment its place among them.
-std::vector<BakedPiece> FindPieces(const TetMesh& mesh, const Fragments& found,
-                                   std::vector<int32_t>& fragment_pieces) {
-  std::vector<BakedPiece> fragments(static_cast<size_t>(found.count()));
-  for (size_t fragment = 0; fragment < fragments.size(); ++fragment) {
-    fragments[fragment].nodes = found.node_counts[fragment];
-    fragments[fragment].volume = found.volumes[fragment];
+std::vector<BakedPiece> FindPieces(const TetMesh& mesh, const NamedPieces& named) {
+  std::vector<BakedPiece> pieces(static_cast<size_t>(named.count()));
+  const std::vector<int32_t> first_nodes = named.FirstNodes();
+  for (int32_t piece = 0; piece < named.count(); ++piece) {
+    pieces[static_cast<size_t>(piece)].smallest_node = first_nodes[static_cast<size_t>(piece)];
+    pieces[static_cast<size_t>(piece)].volume = named.volume(piece);
   }
-  for (size_t node = found.node_fragments.size(); node-- > 0;) {
-    const int32_t fragment = found.node_fragments[node];
-    if (fragment < 0) continue;
-    fragments[static_cast<size_t>(fragment)].smallest_node = static_cast<int32_t>(node);
+  for (int32_t node = 0; node < mesh.node_count(); ++node) {
+    const int32_t piece = named.piece_of(node);
+    if (piece >= 0) ++pieces[static_cast<size_t>(piece)].nodes;
   }
+  std::vector<double> volumes(pieces.size(), 0.0);
   for (int64_t tet = 0; tet < mesh.tet_count(); ++tet) {
     const double quarter = SignedVolume(CornersOf(mesh, tet)) / 4;
     for (const int32_t node : mesh.tets[static_cast<size_t>(tet)]) {
-      const int32_t fragment = found.node_fragments[static_cast<size_t>(node)];
+      const auto piece = static_cast<size_t>(named.piece_of(node));
+      volumes[piece] += quarter;
       for (size_t k = 0; k < 3; ++k) {
-        fragments[static_cast<size_t>(fragment)].center[k] +=
-            quarter * mesh.rest_positions[static_cast<size_t>(node)][k];
+        pieces[piece].center[k] += quarter * mesh.rest_positions[static_cast<size_t>(node)][k];
       }
     }
   }
-  std::vector<size_t> order(fragments.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](size_t a, size_t b) { return fragments[a].volume > fragments[b].volume; });
-  std::vector<BakedPiece> pieces;
-  fragment_pieces.resize(fragments.size());
-  for (const size_t fragment : order) {
-    fragment_pieces[fragment] = static_cast<int32_t>(pieces.size());
-    pieces.push_back(fragments[fragment]);
-    for (double& coordinate : pieces.back().center) coordinate /= pieces.back().volume;
+  for (size_t piece = 0; piece < pieces.size(); ++piece) {
+    for (double& coordinate : pieces[piece].center) coordinate /= volumes[piece];
   }
   return pieces;
 }
@@ -68,19 +58,16 @@ void AppendTetsOf(const TetMesh& mesh, const Incidence& incidence, const Surface
 
 }  // namespace
 
-BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence,
+BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const NamedPieces& pieces,
                          std::span<const int32_t> broken_edges) {
   BakedSurface surface;
   surface.topology =
       ExtractSurface(mesh, incidence, BuildFaces(mesh), broken_edges, SurfaceOptions{});
+  surface.pieces = FindPieces(mesh, pieces);
   const SurfaceTopology& topology = surface.topology;
-  std::vector<int32_t> fragment_pieces;
-  const Fragments fragments = FindFragments(mesh, incidence, broken_edges);
-  surface.pieces = FindPieces(mesh, fragments, fragment_pieces);
   surface.point_pieces.assign(topology.points.size(), -1);
   for (size_t i = 0; i < topology.triangles.size(); ++i) {
-    const int32_t fragment = fragments.node_fragments[static_cast<size_t>(topology.nodes[i])];
-    const int32_t piece = fragment_pieces[static_cast<size_t>(fragment)];
+    const int32_t piece = pieces.piece_of(topology.nodes[i]);
     surface.triangle_pieces.push_back(piece);
     surface.triangle_regions.push_back(mesh.region_of(topology.tets[i]));
     for (const int32_t point : topology.triangles[i]) {

@@ -9,7 +9,7 @@
 #include "absl/status/statusor.h"
 #include "client/io/series/moved_points.h"
 #include "core/base/vec3.h"
-#include "core/damage/edge_mask.h"
+#include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
@@ -29,14 +29,15 @@ struct BakedPiece {
 // end is so from the start, and the two sides of a crack coincide until it opens.
 struct BakedSurface {
   SurfaceTopology topology;
-  std::vector<BakedPiece> pieces;  // by rest volume, the largest first; ties by smallest node
+  std::vector<BakedPiece> pieces;  // by id
   std::vector<int32_t> triangle_pieces;
   std::vector<int32_t> triangle_regions;
   std::vector<int32_t> point_pieces;
 };
 
-// Precondition: `broken_edges`, those of the last frame, are ascending and in range.
-BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence,
+// Preconditions: `broken_edges`, those of the last frame, are ascending and in range; `pieces` has
+// come to the last frame.
+BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const NamedPieces& pieces,
                          std::span<const int32_t> broken_edges);
 
 // Carries a baked surface through the frames of its run. A copy of a point moves with all nodes

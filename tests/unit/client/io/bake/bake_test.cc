@@ -25,6 +25,7 @@ namespace {
 using ::cleave::testing::BarFrame;
 using ::cleave::testing::BarMesh;
 using ::cleave::testing::BreakingBar;
+using ::cleave::testing::PiecesOfBar;
 using ::testing::HasSubstr;
 using Json = google::protobuf::Value;
 
@@ -143,7 +144,8 @@ class BakeTest : public ::testing::Test {
   const TetMesh mesh_ = BarMesh();
   const Incidence incidence_ = BuildIncidence(mesh_);
   const Frame last_ = BarFrame(mesh_, kFrames - 1);
-  const BakedSurface surface_ = BakeSurface(mesh_, incidence_, last_.broken_edges);
+  const BakedSurface surface_ =
+      BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6), last_.broken_edges);
   std::vector<std::vector<Vec3>> points_;  // a frame each, as BakedMotion has them
   std::vector<std::vector<Vec3>> velocities_;
   BakeOptions options_;
@@ -341,7 +343,10 @@ TEST_F(BakeTest, ACutBakeGoesOnToTheSameBytes) {
     const int64_t units = format == BakeFormat::kUsda ? 2 * kFrames : kFrames;
     for (const int64_t at : {int64_t{1}, int64_t{3}, units - 1}) {
       const auto stopped = WriteBake(mesh_, BreakingBar(mesh_), options_,
-                                     [at](int64_t done, int64_t) { return done < at; });
+                                     [&, naming = true](int64_t done, int64_t) mutable {
+                                       if (naming) return naming = done < kFrames, true;
+                                       return done < at;
+                                     });
       EXPECT_EQ(stopped.status().code(), absl::StatusCode::kCancelled);
       EXPECT_FALSE(std::filesystem::exists(options_.folder + "/" + name));
       // What a kill leaves behind the mark does not count.

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "core/surface/visible_surface.h"
 #include "core/surface/faces.h"
+#include "core/surface/visible_surface.h"
 #include "tests/unit/client/io/bake/breaking_bar.h"
 
 namespace cleave {
@@ -16,6 +16,7 @@ namespace {
 
 using ::cleave::testing::BarFrame;
 using ::cleave::testing::BarMesh;
+using ::cleave::testing::PiecesOfBar;
 using ::testing::HasSubstr;
 
 // Of the space that a closed surface encloses.
@@ -37,11 +38,12 @@ class BakedSurfaceTest : public ::testing::Test {
   const TetMesh mesh_ = BarMesh();
   const Incidence incidence_ = BuildIncidence(mesh_);
   const Frame last_ = BarFrame(mesh_, 5);
-  const BakedSurface surface_ = BakeSurface(mesh_, incidence_, last_.broken_edges);
+  const BakedSurface surface_ =
+      BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6), last_.broken_edges);
   BakedMotion motion_{mesh_, incidence_, surface_, last_.broken_edges};
 };
 
-TEST_F(BakedSurfaceTest, PiecesAreThoseOfTheLastFrameByVolume) {
+TEST_F(BakedSurfaceTest, PiecesAreThoseOfTheLastFrameTheLargerFirst) {
   ASSERT_EQ(surface_.pieces.size(), 2u);
   EXPECT_GT(surface_.pieces[0].volume, surface_.pieces[1].volume);
   EXPECT_NEAR(surface_.pieces[0].volume + surface_.pieces[1].volume, 2 * 1 * 1, 1e-12);

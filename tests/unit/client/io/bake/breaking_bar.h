@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/io/series/frame_source.h"
+#include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 
@@ -76,6 +77,15 @@ inline Frame BarFrame(const TetMesh& mesh, int64_t position) {
     }
   }
   return frame;
+}
+
+// The bar's pieces after `count` frames.
+inline NamedPieces PiecesOfBar(const TetMesh& mesh, const Incidence& incidence, int64_t count) {
+  NamedPieces pieces(mesh, incidence);
+  for (int64_t position = 0; position < count; ++position) {
+    pieces.Break(BarFrame(mesh, position).broken_edges);
+  }
+  return pieces;
 }
 
 inline FrameSource BreakingBar(const TetMesh& mesh, int64_t count = 6) {
