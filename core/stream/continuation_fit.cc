@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,26 +9,23 @@
 namespace cleave {
 namespace {
 
-// About log2(1 + |r|) bits for a residual of so many steps: linear between powers of two.
-double Bits(double residual) {
-  const auto pattern = std::bit_cast<uint64_t>(1.0 + std::abs(residual));
-  return static_cast<double>(pattern) * 0x1p-52 - 1023.0;
+Double4 Residual(const DetailSample& sample, const Continuation& by) {
+  const Double4 guess = Splat(by.last) * sample.last + Splat(by.before) * sample.before +
+                        Splat(by.rest) * sample.rest;
+  return (sample.wanted - guess * (1.0 / kContinuationOne)) * (1.0 / kUnitsPerStep);
 }
 
-double Residual(const DetailSample& sample, size_t axis, const Continuation& by) {
-  const auto& details = sample.details;
-  const double guess = static_cast<double>(by.last) * details.last[axis] +
-                       static_cast<double>(by.before) * details.before[axis] +
-                       static_cast<double>(by.rest) * details.rest[axis];
-  return (sample.wanted[axis] - guess / kContinuationOne) / kUnitsPerStep;
-}
-
+// About log2(1 + |2 r|) bits for each residual r in steps: linear between powers of two, which is
+// what the bit pattern of a double is.
 double Cost(std::span<const DetailSample> samples, const Continuation& by) {
-  double bits = 0;
+  constexpr int64_t kPatternOfOne = int64_t{1023} << 52;
+  constexpr int kSpare = 12;  // bits, so that a sum does not overflow
+  Int64x4 bits{};
   for (const DetailSample& sample : samples) {
-    for (size_t axis = 0; axis < 3; ++axis) bits += Bits(2 * Residual(sample, axis, by));
+    const Double4 size = 1.0 + Abs(2 * Residual(sample, by));
+    bits += (reinterpret_cast<Int64x4>(size) - kPatternOfOne) >> kSpare;
   }
-  return bits;
+  return 0x1p-40 * static_cast<double>(bits[0] + bits[1] + bits[2] + bits[3]);
 }
 
 int32_t Rounded(double value) {
@@ -39,19 +35,19 @@ int32_t Rounded(double value) {
 
 // Least squares in which a sample counts less the farther `by` misses it.
 Continuation Refine(std::span<const DetailSample> samples, const Continuation& by) {
-  std::array<std::array<double, 4>, 3> normal{};
+  std::array<std::array<Double4, 4>, 3> sums{};
   for (const DetailSample& sample : samples) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const double miss = Residual(sample, axis, by);
-      const double weight = 1 / (1 + miss * miss);
-      const std::array<double, 4> row = {static_cast<double>(sample.details.last[axis]),
-                                         static_cast<double>(sample.details.before[axis]),
-                                         static_cast<double>(sample.details.rest[axis]),
-                                         sample.wanted[axis]};
-      for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 4; ++j) normal[i][j] += weight * row[i] * row[j];
-      }
+    const Double4 miss = Residual(sample, by);
+    const Double4 weight = 1 / (1 + miss * miss);
+    const std::array<Double4, 4> row = {sample.last, sample.before, sample.rest, sample.wanted};
+    for (size_t i = 0; i < 3; ++i) {
+      for (size_t j = i; j < 4; ++j) sums[i][j] += weight * row[i] * row[j];
     }
+  }
+  std::array<std::array<double, 4>, 3> normal{};
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = i; j < 4; ++j) normal[i][j] = Sum(sums[i][j]);
+    for (size_t j = 0; j < i; ++j) normal[i][j] = normal[j][i];
   }
   const double damping =
       1 + 1e-6 * std::max({normal[0][0], normal[1][1], normal[2][2]});  // where details are alike

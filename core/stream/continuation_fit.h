@@ -7,10 +7,13 @@
 
 namespace cleave {
 
-// A place that a fit looks at: what its detail must be (grid units) and what it was.
+// A place that a fit looks at: what its detail must be (grid units) and what it was in the last
+// frame, in the one before and at rest. Lanes are x, y, z and 0.
 struct DetailSample {
-  std::array<double, 3> wanted{};
-  InterpolationPredictor::Details details;
+  Double4 wanted;
+  Double4 last;
+  Double4 before;
+  Double4 rest;
 };
 
 // The continuation that leaves the smallest residuals, as the format can code it. Robust: a few

@@ -28,7 +28,7 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
     unsigned bits = 0;
     for (size_t bit = 0; bit < std::min<size_t>(8, motion.held.size() - piece); ++bit) {
-      bits |= (motion.held[piece + bit] ? 1u : 0u) << bit;
+      bits |= unsigned{motion.held[piece + bit]} << bit;
     }
     writer.Put(static_cast<uint8_t>(bits));
   }
@@ -71,7 +71,7 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section
     for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
       const unsigned bits = reader.Get<uint8_t>();
       const size_t there = std::min<size_t>(8, motion.held.size() - piece);
-      for (size_t bit = 0; bit < there; ++bit) motion.held[piece + bit] = (bits >> bit & 1) != 0;
+      for (size_t bit = 0; bit < there; ++bit) motion.held[piece + bit] = bits >> bit & 1;
       fits &= bits >> there == 0;
     }
   }

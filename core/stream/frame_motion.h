@@ -15,11 +15,11 @@ namespace cleave {
 
 // What a frame says about its prediction, for predictor 2: FORMAT.md, "Motion".
 struct FrameMotion {
-  std::vector<bool> held;                   // by piece: stays where it is; empty: none does
+  std::vector<uint8_t> held;                // by piece: 1 if it stays where it is; empty: none does
   std::vector<Continuation> continuations;  // by group; not in a key frame
   std::vector<uint8_t> classes;  // by group, where the frame is fresh for coder 2; else empty
 
-  bool Holds(int32_t piece) const { return !held.empty() && held[static_cast<size_t>(piece)]; }
+  bool Holds(int32_t piece) const { return !held.empty() && held[static_cast<size_t>(piece)] != 0; }
 };
 
 // Appends a motion section for this many groups.

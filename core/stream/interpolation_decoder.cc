@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -17,7 +18,9 @@ namespace cleave {
 
 InterpolationDecoder::InterpolationDecoder(const StreamHeader& header, const StreamMesh& mesh)
     : header_(header), predictor_(header, mesh) {
-  residuals_.resize(3 * mesh.rest_positions.size());
+  residuals_.resize(mesh.rest_positions.size());
+  all_places_.resize(mesh.rest_positions.size());
+  std::iota(all_places_.begin(), all_places_.end(), 0);
 }
 
 absl::Status InterpolationDecoder::DecodePlanes(const Section& section,
@@ -32,8 +35,8 @@ absl::Status InterpolationDecoder::DecodePlanes(const Section& section,
   std::vector<int32_t> values(size);
   FromBytePlanes(planes, values);
   for (size_t at = 0; at < moving.size(); ++at) {
-    std::copy_n(values.begin() + static_cast<ptrdiff_t>(3 * at), 3,
-                residuals_.begin() + 3 * moving[at]);
+    const int32_t* r = values.data() + 3 * at;
+    residuals_[static_cast<size_t>(moving[at])] = Int32x4{r[0], r[1], r[2], 0};
   }
   return absl::OkStatus();
 }
@@ -66,7 +69,7 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
   std::vector<SymbolCounts> counts(rans ? chunks : 0);
   std::vector<absl::Status> statuses(chunks);
   ParallelFor(static_cast<int64_t>(chunks), 1, [&](int64_t from, int64_t to) {
-    std::vector<int32_t> moving;
+    std::vector<int32_t> some;
     for (auto index = static_cast<size_t>(from); index < static_cast<size_t>(to); ++index) {
       const Section& chunk = sections[1 + index];
       const uint64_t first = index * chunk_nodes;
@@ -78,16 +81,19 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
             absl::StrCat("positions section ", index, " does not fit its frame"));
         continue;
       }
-      moving.clear();
-      for (auto place = static_cast<int32_t>(first); place < static_cast<int64_t>(first + count);
-           ++place) {
-        if (!motion.Holds(pieces[place])) moving.push_back(place);
+      std::span<const int32_t> moving = std::span(all_places_).subspan(first, count);
+      if (!motion.held.empty()) {
+        some.clear();
+        for (const int32_t place : moving) {
+          if (!motion.Holds(pieces[place])) some.push_back(place);
+        }
+        moving = some;
       }
       if (!rans) {
         statuses[index] = DecodePlanes(chunk, moving);
       } else if (chunk.raw_bytes == 0 && chunk.coded.empty()) {
         ResidualCoder::SkipZeros(moving, next.residuals.activities, counts[index]);
-        for (const int32_t place : moving) std::fill_n(residuals_.begin() + 3 * place, 3, 0);
+        for (const int32_t place : moving) residuals_[static_cast<size_t>(place)] = Int32x4{};
       } else if (chunk.raw_bytes != 12 * moving.size()) {
         statuses[index] = absl::DataLossError("positions section does not fit its frame");
       } else {
@@ -101,25 +107,20 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
 
   next.positions.resize(3 * nodes);
   std::atomic<bool> all_fit{true};
-  const auto choose = [&](int64_t group, std::span<const int32_t>) {
+  const auto choose = [&](int64_t group) {
     return motion.continuations[static_cast<size_t>(group)];
   };
-  const auto correct = [&](int32_t place, const Grid3& prediction) {
-    const bool holds = motion.Holds(pieces[place]);
-    Grid3 position{};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const size_t at = 3 * static_cast<size_t>(place) + axis;
-      const int64_t value =
-          holds ? state.positions[at] : prediction[axis] + int64_t{kUnitsPerStep} * residuals_[at];
-      if (value < -kMaxQuantised || value > kMaxQuantised) {
-        all_fit.store(false, std::memory_order_relaxed);
-        continue;
-      }
-      position[axis] = static_cast<int32_t>(value);
+  const auto holds = [&](int32_t place) { return motion.Holds(pieces[place]); };
+  const auto correct = [&](int32_t place, Double4 prediction) {
+    const Double4 position =
+        prediction + kUnitsPerStep * Widen(residuals_[static_cast<size_t>(place)]);
+    if (Any(Abs(position) > kMaxQuantised)) {
+      all_fit.store(false, std::memory_order_relaxed);
+      return Double4{};
     }
     return position;
   };
-  predictor_.Run(key, state.positions, state.previous, next.positions, choose, correct);
+  predictor_.Run(key, state.positions, state.previous, next.positions, choose, holds, correct);
   return all_fit.load() ? absl::OkStatus()
                         : absl::DataLossError("a decoded coordinate is out of range");
 }

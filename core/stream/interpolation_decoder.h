@@ -36,7 +36,8 @@ class InterpolationDecoder {
 
   StreamHeader header_;
   InterpolationPredictor predictor_;
-  std::vector<int32_t> residuals_;  // steps, by place
+  std::vector<int32_t> all_places_;
+  std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
 };
 
 }  // namespace cleave

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <numeric>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
@@ -26,9 +27,11 @@ constexpr double kMaxTarget = kMaxQuantised - kUnitsPerStep;
 
 InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const StreamMesh& mesh)
     : header_(header), predictor_(header, mesh) {
-  targets_.resize(3 * mesh.rest_positions.size());
-  residuals_.resize(3 * mesh.rest_positions.size());
-  moves_.resize(mesh.rest_positions.size());
+  targets_.resize(mesh.rest_positions.size());
+  residuals_.resize(mesh.rest_positions.size());
+  all_places_.resize(mesh.rest_positions.size());
+  std::iota(all_places_.begin(), all_places_.end(), 0);
+  samples_.reserve(2 * kMaxSamples);
 }
 
 absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions,
@@ -38,15 +41,15 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
   const std::vector<int32_t>& nodes = predictor_.order().nodes;
   std::atomic<bool> all_fit{true};
   ParallelFor(static_cast<int64_t>(nodes.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
-    bool fit = true;
+    Int64x4 fits = ~Int64x4{};
     for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
-      const Vec3& position = positions[static_cast<size_t>(nodes[place])];
-      for (size_t axis = 0; axis < 3; ++axis) {
-        const double target = (position[axis] - origin[axis]) * inverse_unit;
-        fit &= target >= -kMaxTarget && target <= kMaxTarget;
-        targets_[3 * place + axis] = target;
-      }
+      const Vec3& x = positions[static_cast<size_t>(nodes[place])];
+      const Double4 target =
+          Double4{x[0] - origin[0], x[1] - origin[1], x[2] - origin[2], 0} * inverse_unit;
+      fits &= Abs(target) <= kMaxTarget;
+      targets_[place] = target;
     }
+    const bool fit = !Any(~fits);
     if (!fit) all_fit.store(false, std::memory_order_relaxed);
   });
   if (!all_fit.load()) {
@@ -69,54 +72,45 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
 }
 
 bool InterpolationEncoder::Stays(const StreamState& state, size_t place) const {
-  constexpr double kHalfStep = kUnitsPerStep / 2;
-  bool stays = true;
-  for (size_t at = 3 * place; at < 3 * place + 3; ++at) {
-    stays &= std::abs(targets_[at] - state.positions[at]) <= kHalfStep;
-  }
-  return stays;
+  const int32_t* last = state.positions.data() + 3 * place;
+  const Double4 from = {static_cast<double>(last[0]), static_cast<double>(last[1]),
+                        static_cast<double>(last[2]), 0};
+  return !Any(Abs(targets_[place] - from) > kUnitsPerStep / 2);
 }
 
 bool InterpolationEncoder::AllHold(const StreamState& state) const {
-  for (size_t place = 0; place < moves_.size(); ++place) {
+  for (size_t place = 0; place < targets_.size(); ++place) {
     if (!Stays(state, place)) return false;
   }
   return true;
 }
 
 void InterpolationEncoder::ChooseHolds(const StreamState& state) {
-  ParallelFor(static_cast<int64_t>(moves_.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
-    for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
-      moves_[place] = Stays(state, place) ? 0 : 1;
-    }
-  });
   const Pieces& pieces = predictor_.pieces();
-  motion_.held.assign(static_cast<size_t>(pieces.count()), true);
-  for (size_t place = 0; place < moves_.size(); ++place) {
-    if (moves_[place] != 0) motion_.held[static_cast<size_t>(pieces.labels()[place])] = false;
+  motion_.held.assign(static_cast<size_t>(pieces.count()), 1);
+  int32_t left = pieces.count();
+  for (size_t place = 0; place < targets_.size() && left > 0; ++place) {
+    uint8_t& held = motion_.held[static_cast<size_t>(pieces.labels()[place])];
+    if (held == 0 || Stays(state, place)) continue;
+    held = 0;
+    --left;
   }
-  if (std::find(motion_.held.begin(), motion_.held.end(), true) == motion_.held.end()) {
-    motion_.held.clear();
-  }
+  if (left == 0) motion_.held.clear();
 }
 
-Continuation InterpolationEncoder::Choose(int64_t group, std::span<const int32_t> next) {
+Continuation InterpolationEncoder::Choose(int64_t group) {
   const NodeOrder& order = predictor_.order();
   const int32_t begin = order.group_begins[static_cast<size_t>(group)];
   const int32_t end = order.group_begins[static_cast<size_t>(group) + 1];
   const int32_t stride = std::max(1, (end - begin) / kMaxSamples);
-  std::vector<DetailSample> samples;
+  samples_.clear();
   for (int32_t place = begin + stride / 2; place < end; place += stride) {
     if (predictor_.stencils()[place].leads() || motion_.Holds(predictor_.pieces()[place])) continue;
-    const Grid3 blend = predictor_.Blend(place, next);
-    DetailSample sample;
-    sample.details = predictor_.details(place);
-    for (size_t axis = 0; axis < 3; ++axis) {
-      sample.wanted[axis] = targets_[3 * static_cast<size_t>(place) + axis] - blend[axis];
-    }
-    samples.push_back(sample);
+    samples_.push_back({targets_[static_cast<size_t>(place)] - predictor_.Blend(place),
+                        Widen(predictor_.LastDetail(place)), Widen(predictor_.DetailBefore(place)),
+                        Widen(predictor_.RestDetail(place))});
   }
-  return FitContinuation(samples);
+  return FitContinuation(samples_);
 }
 
 void InterpolationEncoder::SetBroken(std::span<const int32_t> broken, const StreamState& state) {
@@ -130,26 +124,19 @@ void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeade
   motion_.held.clear();
   if (!key) ChooseHolds(state);
   motion_.continuations.clear();
-  next.resize(targets_.size());
-  const auto choose = [&](int64_t group, std::span<const int32_t> done) {
-    motion_.continuations.push_back(key ? kFromRest : Choose(group, done));
+  next.resize(3 * targets_.size());
+  const auto choose = [&](int64_t group) {
+    motion_.continuations.push_back(key ? kFromRest : Choose(group));
     return motion_.continuations.back();
   };
-  const auto correct = [&](int32_t place, const Grid3& prediction) {
-    const bool holds = motion_.Holds(predictor_.pieces()[place]);
-    Grid3 position{};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const size_t at = 3 * static_cast<size_t>(place) + axis;
-      const double steps =
-          std::floor((targets_[at] - prediction[axis]) * (1.0 / kUnitsPerStep) + 0.5);
-      residuals_[at] = holds ? 0 : static_cast<int32_t>(steps);
-      position[axis] =
-          holds ? state.positions[at]
-                : static_cast<int32_t>(prediction[axis] + int64_t{kUnitsPerStep} * residuals_[at]);
-    }
-    return position;
+  const auto holds = [&](int32_t place) { return motion_.Holds(predictor_.pieces()[place]); };
+  const auto correct = [&](int32_t place, Double4 prediction) {
+    const Double4 steps =
+        Floor((targets_[static_cast<size_t>(place)] - prediction) * (1.0 / kUnitsPerStep) + 0.5);
+    residuals_[static_cast<size_t>(place)] = ToInts(steps);
+    return prediction + kUnitsPerStep * steps;
   };
-  predictor_.Run(key, state.positions, state.previous, next, choose, correct);
+  predictor_.Run(key, state.positions, state.previous, next, choose, holds, correct);
   const bool fresh = key || state.residuals.fresh;
   motion_.classes.clear();
   if (fresh && header_.coder_id == kCoderContextRans) ChooseClasses();
@@ -167,9 +154,8 @@ void InterpolationEncoder::ChooseClasses() {
          ++place) {
       if (motion_.Holds(predictor_.pieces()[place])) continue;
       ++moving;
-      for (size_t axis = 0; axis < 3; ++axis) {
-        sum += static_cast<uint64_t>(std::abs(residuals_[3 * static_cast<size_t>(place) + axis]));
-      }
+      const Int32x4 r = residuals_[static_cast<size_t>(place)];
+      for (int axis = 0; axis < 3; ++axis) sum += static_cast<uint64_t>(std::abs(r[axis]));
     }
     motion_.classes.push_back(
         ClassOf(static_cast<uint32_t>(std::min<uint64_t>(16 * sum / moving, 65535))));
@@ -178,7 +164,7 @@ void InterpolationEncoder::ChooseClasses() {
 
 void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& history,
                                            FrameHeader& header, std::string& body,
-                                           ResidualHistory& next) const {
+                                           ResidualHistory& next) {
   const bool rans = header_.coder_id == kCoderContextRans;
   std::optional<ResidualCoder> coder;
   if (rans) {
@@ -188,50 +174,46 @@ void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& hi
   const auto nodes = static_cast<int64_t>(header_.node_count);
   const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
   const int64_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
-  struct Chunk {
-    uint32_t raw_bytes = 0;
-    std::string coded;
-    SymbolCounts counts;
-  };
-  std::vector<Chunk> coded(static_cast<size_t>(chunks));
+  chunks_.resize(static_cast<size_t>(chunks));
   ParallelFor(chunks, 1, [&](int64_t from, int64_t to) {
-    std::vector<int32_t> moving;
-    RansWriter writer;
     for (int64_t index = from; index < to; ++index) {
-      Chunk& chunk = coded[static_cast<size_t>(index)];
-      moving.clear();
-      bool all_zero = true;
-      const int64_t end = std::min(nodes, (index + 1) * chunk_nodes);
-      for (auto place = static_cast<int32_t>(index * chunk_nodes); place < end; ++place) {
-        if (motion_.Holds(predictor_.pieces()[place])) continue;
-        moving.push_back(place);
-        const int32_t* r = residuals_.data() + 3 * static_cast<size_t>(place);
-        all_zero &= (r[0] | r[1] | r[2]) == 0;
+      Chunk& chunk = chunks_[static_cast<size_t>(index)];
+      chunk.raw_bytes = 0;
+      chunk.coded.clear();
+      const int64_t first = index * chunk_nodes;
+      std::span<const int32_t> moving =
+          std::span(all_places_)
+              .subspan(static_cast<size_t>(first),
+                       static_cast<size_t>(std::min(chunk_nodes, nodes - first)));
+      if (!motion_.held.empty()) {
+        chunk.moving.clear();
+        for (const int32_t place : moving) {
+          if (!motion_.Holds(predictor_.pieces()[place])) chunk.moving.push_back(place);
+        }
+        moving = chunk.moving;
       }
       if (!rans) {
         std::vector<int32_t> values;
         values.reserve(3 * moving.size());
         for (const int32_t place : moving) {
-          const auto r = residuals_.begin() + 3 * place;
-          values.insert(values.end(), r, r + 3);
+          const Int32x4 r = residuals_[static_cast<size_t>(place)];
+          for (int axis = 0; axis < 3; ++axis) values.push_back(r[axis]);
         }
         const std::string planes = ToBytePlanes(values);
         chunk.raw_bytes = static_cast<uint32_t>(planes.size());
         if (!planes.empty()) {
           chunk.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / values.size()));
         }
-      } else if (all_zero) {
-        ResidualCoder::SkipZeros(moving, next.activities, chunk.counts);
       } else {
-        writer.Clear();
-        coder->Encode(moving, residuals_, next.activities, chunk.counts, writer);
-        chunk.raw_bytes = static_cast<uint32_t>(12 * moving.size());
-        chunk.coded = writer.Finish();
+        chunk.counts = {};
+        chunk.coded =
+            coder->Encode(moving, residuals_, next.activities, chunk.counts, chunk.writer);
+        if (!chunk.coded.empty()) chunk.raw_bytes = static_cast<uint32_t>(12 * moving.size());
       }
     }
   });
   for (int64_t index = 0; index < chunks; ++index) {
-    const Chunk& chunk = coded[static_cast<size_t>(index)];
+    const Chunk& chunk = chunks_[static_cast<size_t>(index)];
     const int64_t first = index * chunk_nodes;
     AppendSection({.type = SectionType::kPositions,
                    .coder = static_cast<uint8_t>(header_.coder_id),

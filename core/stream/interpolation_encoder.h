@@ -7,10 +7,13 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "core/base/int4.h"
 #include "core/base/vec3.h"
+#include "core/stream/continuation_fit.h"
 #include "core/stream/frame_header.h"
 #include "core/stream/frame_motion.h"
 #include "core/stream/interpolation_predictor.h"
+#include "core/stream/rans.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_state.h"
 
@@ -46,20 +49,30 @@ class InterpolationEncoder {
   void Accept(FrameKind kind);
 
  private:
+  // What is coded of a run of places; it keeps its memory from frame to frame.
+  struct Chunk {
+    std::vector<int32_t> moving;  // its places, where some hold
+    RansWriter writer;
+    uint32_t raw_bytes = 0;
+    std::string coded;
+    SymbolCounts counts;
+  };
   bool Stays(const StreamState& state, size_t place) const;
   void ChooseHolds(const StreamState& state);
-  Continuation Choose(int64_t group, std::span<const int32_t> next);
+  Continuation Choose(int64_t group);
   void ChooseClasses();
   void AppendPositions(bool fresh, const ResidualHistory& history, FrameHeader& header,
-                       std::string& body, ResidualHistory& next) const;
+                       std::string& body, ResidualHistory& next);
 
   StreamHeader header_;
   InterpolationPredictor predictor_;
   bool history_is_new_ = true;
   double tolerance_ = 0;            // m, of the targets
-  std::vector<double> targets_;     // grid units, by place
-  std::vector<int32_t> residuals_;  // steps, by place
-  std::vector<uint8_t> moves_;      // by place
+  std::vector<Double4> targets_;    // grid units, by place: x, y, z, 0
+  std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
+  std::vector<int32_t> all_places_;
+  std::vector<DetailSample> samples_;
+  std::vector<Chunk> chunks_;
   FrameMotion motion_;
 };
 

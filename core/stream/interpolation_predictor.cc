@@ -20,27 +20,27 @@ InterpolationPredictor::InterpolationPredictor(const StreamHeader& header, const
       stencils_(order_, ByPlace(order_, mesh.rest_positions), mesh.edges),
       origin_(header.origin),
       domain_bound_(header.domain_bound) {
-  details_.resize(mesh.rest_positions.size());
-  next_details_.resize(mesh.rest_positions.size());
+  for (std::vector<Int32x4>* lanes : {&positions_, &next_, &last_, &before_, &at_rest_}) {
+    lanes->resize(mesh.rest_positions.size());
+  }
 }
 
-Grid3 InterpolationPredictor::DetailIn(int32_t place, std::span<const int32_t> positions) const {
-  Grid3 detail{};
-  if (stencils_[place].leads()) return detail;
-  const Grid3 blend = Blend(place, positions);
-  for (size_t axis = 0; axis < 3; ++axis) {
-    detail[axis] = positions[3 * static_cast<size_t>(place) + axis] - blend[axis];
-  }
-  return detail;
+Int32x4 InterpolationPredictor::DetailIn(int32_t place, std::span<const int32_t> positions) const {
+  if (stencils_[place].leads()) return Int32x4{};
+  // The places of a stencil are before another one, so that four numbers are there.
+  const Double4 blend = BlendOf(
+      place, [&](int32_t of) { return LoadInts(positions.data() + 3 * static_cast<size_t>(of)); });
+  const int32_t* position = positions.data() + 3 * static_cast<size_t>(place);
+  const Int32x4 whole = ToInts(blend);
+  return Int32x4{position[0] - whole[0], position[1] - whole[1], position[2] - whole[2], 0};
 }
 
 void InterpolationPredictor::MakeDetails(int32_t place, std::span<const int32_t> last,
                                          std::span<const int32_t> before) {
-  Details& details = details_[static_cast<size_t>(place)];
-  details.rest = DetailIn(place, rest_);
+  at_rest_[static_cast<size_t>(place)] = DetailIn(place, rest_);
   if (last.empty()) return;
-  details.last = DetailIn(place, last);
-  details.before = DetailIn(place, before);
+  last_[static_cast<size_t>(place)] = DetailIn(place, last);
+  before_[static_cast<size_t>(place)] = DetailIn(place, before);
 }
 
 void InterpolationPredictor::Prepare(double tolerance, std::span<const int32_t> broken,
@@ -54,7 +54,7 @@ void InterpolationPredictor::Prepare(double tolerance, std::span<const int32_t> 
     tolerance_ = tolerance;
   }
   const bool all = history_is_new || grid_is_new;
-  const auto count = static_cast<int64_t>(all ? details_.size() : touched.size());
+  const auto count = static_cast<int64_t>(all ? last_.size() : touched.size());
   ParallelFor(count, 1024, [&](int64_t begin, int64_t end) {
     for (int64_t at = begin; at < end; ++at) {
       MakeDetails(all ? static_cast<int32_t>(at) : touched[static_cast<size_t>(at)], last, before);
@@ -63,17 +63,11 @@ void InterpolationPredictor::Prepare(double tolerance, std::span<const int32_t> 
 }
 
 void InterpolationPredictor::Accept(bool key) {
-  ParallelFor(static_cast<int64_t>(details_.size()), 4096, [&](int64_t begin, int64_t end) {
-    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      Details& details = details_[at];
-      details.before = key ? next_details_[at] : details.last;
-      details.last = next_details_[at];
-    }
-  });
+  before_.swap(last_);
+  last_.swap(next_);
+  if (key) before_ = last_;
 }
 
-void InterpolationPredictor::Hold() {
-  for (Details& details : details_) details.before = details.last;
-}
+void InterpolationPredictor::Hold() { before_ = last_; }
 
 }  // namespace cleave

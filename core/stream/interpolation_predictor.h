@@ -1,13 +1,13 @@
 #ifndef CLEAVE_CORE_STREAM_INTERPOLATION_PREDICTOR_H_
 #define CLEAVE_CORE_STREAM_INTERPOLATION_PREDICTOR_H_
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <cstring>
 #include <span>
 #include <vector>
 
+#include "core/base/int4.h"
 #include "core/base/parallel.h"
 #include "core/stream/node_order.h"
 #include "core/stream/stencils.h"
@@ -16,9 +16,6 @@
 #include "core/stream/stream_state.h"
 
 namespace cleave {
-
-// Coordinates x, y, z of a place, in grid units.
-using Grid3 = std::array<int32_t, 3>;
 
 // How a group's details continue, in 1/64: the next is a of the last, b of the one before and c of
 // that at rest.
@@ -41,6 +38,9 @@ inline constexpr std::array<Continuation, 4> kNamedContinuations = {
 // among them before. A place's detail is what remains of its position after the blend of its
 // stencil's. Holds what follows from rest positions, broken edges and the last two frames, and
 // keeps it up to date; encoder and decoder hold the same. Loops run on the current TBB arena.
+//
+// Coordinates are whole numbers of grid units. Where they are worked with, the lanes of a vector
+// are x, y, z and 0; doubles are exact, since no sum comes near 2^53.
 class InterpolationPredictor {
  public:
   InterpolationPredictor(const StreamHeader& header, const StreamMesh& mesh);
@@ -55,103 +55,115 @@ class InterpolationPredictor {
   void Prepare(double tolerance, std::span<const int32_t> broken, std::span<const int32_t> last,
                std::span<const int32_t> before, bool history_is_new);
 
-  // What stands before a group is decoded is given to `continuation(group, next)`, which chooses.
-  // Then for each of its places `correct(place, prediction)` gives the position, which goes to
-  // `next`. Places of a group may be corrected at the same time; its leaders come first. In a key
-  // frame, `key`, leaders are predicted from rest.
-  template <typename Choose, typename Correct>
+  // Goes through the groups. What stands before one is decoded is what `choose(group)` may Blend,
+  // and it gives how the group's details continue. Then for each of its places
+  // `correct(place, prediction)` gives the position, which goes to `next`; where `holds(place)` it
+  // is that of `last`. Places of a group may be corrected at the same time; its leaders come first.
+  // In a key frame, `key`, leaders are predicted from rest.
+  template <typename Choose, typename Holds, typename Correct>
   void Run(bool key, std::span<const int32_t> last, std::span<const int32_t> before,
-           std::span<int32_t> next, const Choose& choose, const Correct& correct);
+           std::span<int32_t> next, const Choose& choose, const Holds& holds,
+           const Correct& correct);
 
   // Makes the frame of the last Run the last frame. After a key frame the body counts as at rest.
   void Accept(bool key);
   // Makes the last frame also the one before it.
   void Hold();
 
-  // Of a place that does not lead: the blend of its stencil in `positions`.
-  Grid3 Blend(int32_t place, std::span<const int32_t> positions) const {
-    const Stencil& stencil = stencils_[place];
-    std::array<int64_t, 3> sum{};
-    for (size_t k = 0; k < kStencilNodes; ++k) {
-      const int32_t* from = positions.data() + 3 * static_cast<size_t>(stencil.places[k]);
-      const int64_t weight = stencil.weights[k];
-      sum[0] += weight * from[0];
-      sum[1] += weight * from[1];
-      sum[2] += weight * from[2];
-    }
-    return {Clamp((sum[0] + kStencilOne / 2) >> 15), Clamp((sum[1] + kStencilOne / 2) >> 15),
-            Clamp((sum[2] + kStencilOne / 2) >> 15)};
+  // Of a place that does not lead: the blend of its stencil in the frame in work.
+  Double4 Blend(int32_t place) const {
+    return BlendOf(place, [&](int32_t of) { return positions_[static_cast<size_t>(of)]; });
   }
-
-  // Details of a place: of the last frame, of the one before, at rest.
-  struct Details {
-    Grid3 last{};
-    Grid3 before{};
-    Grid3 rest{};
-  };
-  const Details& details(int32_t place) const { return details_[static_cast<size_t>(place)]; }
-
-  static Grid3 Predict(const Grid3& blend, const Details& details, const Continuation& by) {
-    Grid3 prediction;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const int64_t sum = int64_t{by.last} * details.last[axis] +
-                          int64_t{by.before} * details.before[axis] +
-                          int64_t{by.rest} * details.rest[axis];
-      prediction[axis] = Clamp(blend[axis] + ((sum + kContinuationOne / 2) >> 6));
-    }
-    return prediction;
-  }
+  // The details of a place: of the last frame, of the one before, at rest.
+  const Int32x4& LastDetail(int32_t place) const { return last_[static_cast<size_t>(place)]; }
+  const Int32x4& DetailBefore(int32_t place) const { return before_[static_cast<size_t>(place)]; }
+  const Int32x4& RestDetail(int32_t place) const { return at_rest_[static_cast<size_t>(place)]; }
 
  private:
-  static int32_t Clamp(int64_t value) {
-    return static_cast<int32_t>(
-        std::clamp<int64_t>(value, -int64_t{kMaxQuantised}, int64_t{kMaxQuantised}));
+  static Double4 Clamp(Double4 value) {
+    return Max(Min(value, Splat(kMaxQuantised)), Splat(-kMaxQuantised));
   }
-  Grid3 DetailIn(int32_t place, std::span<const int32_t> positions) const;
+  template <typename Load>
+  Double4 BlendOf(int32_t place, const Load& load) const {
+    const Stencil& stencil = stencils_[place];
+    const Double4 near = Widen(LoadInts(stencil.weights.data()));
+    const Double4 far = Widen(LoadInts(stencil.weights.data() + 4));
+    const auto at = [&](size_t k) { return Widen(load(stencil.places[k])); };
+    const Double4 even = SplatLane<0>(near) * at(0) + SplatLane<2>(near) * at(2) +
+                         (SplatLane<0>(far) * at(4) + SplatLane<2>(far) * at(6));
+    const Double4 odd = SplatLane<1>(near) * at(1) + SplatLane<3>(near) * at(3) +
+                        (SplatLane<1>(far) * at(5) + SplatLane<3>(far) * at(7));
+    return Clamp(Floor((even + odd + kStencilOne / 2) * (1.0 / kStencilOne)));
+  }
+  Int32x4 DetailIn(int32_t place, std::span<const int32_t> positions) const;
   void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);
 
   NodeOrder order_;
   Stencils stencils_;
   Vec3 origin_;
   double domain_bound_;
-  double tolerance_ = 0;       // m, of rest_
-  std::vector<int32_t> rest_;  // on the grid, by place
-  std::vector<Details> details_;
-  std::vector<Grid3> next_details_;  // those of the frame in work
+  double tolerance_ = 0;            // m, of rest_
+  std::vector<int32_t> rest_;       // on the grid, by place
+  std::vector<Int32x4> positions_;  // of the frame in work
+  std::vector<Int32x4> next_;       // details of the frame in work
+  std::vector<Int32x4> last_;       // details of the last frame
+  std::vector<Int32x4> before_;     // details of the one before
+  std::vector<Int32x4> at_rest_;    // details at rest
 };
 
-template <typename Choose, typename Correct>
+template <typename Choose, typename Holds, typename Correct>
 void InterpolationPredictor::Run(bool key, std::span<const int32_t> last,
                                  std::span<const int32_t> before, std::span<int32_t> next,
-                                 const Choose& choose, const Correct& correct) {
-  const std::vector<int32_t>& leaders = pieces().leaders();
-  const auto put = [&](int32_t place, const Grid3& position) {
-    std::copy(position.begin(), position.end(), next.begin() + 3 * place);
+                                 const Choose& choose, const Holds& holds, const Correct& correct) {
+  const auto put = [&](int32_t place, Int32x4 position) {
+    positions_[static_cast<size_t>(place)] = position;
+    std::memcpy(next.data() + 3 * static_cast<size_t>(place), &position, 3 * sizeof(int32_t));
   };
+  const auto keep = [&](int32_t place) {
+    const int32_t* from = last.data() + 3 * static_cast<size_t>(place);
+    put(place, Int32x4{from[0], from[1], from[2], 0});
+    next_[static_cast<size_t>(place)] = last_[static_cast<size_t>(place)];
+  };
+  const std::vector<int32_t>& leaders = pieces().leaders();
   auto leader = leaders.begin();
   for (int64_t group = 0; group < order_.groups(); ++group) {
     const int32_t begin = order_.group_begins[static_cast<size_t>(group)];
     const int32_t end = order_.group_begins[static_cast<size_t>(group) + 1];
     for (; leader != leaders.end() && *leader < end; ++leader) {
-      const auto at = 3 * static_cast<size_t>(*leader);
-      Grid3 prediction;
+      const int32_t place = *leader;
+      next_[static_cast<size_t>(place)] = Int32x4{};
+      if (holds(place)) {
+        keep(place);
+        continue;
+      }
+      const auto at = 3 * static_cast<size_t>(place);
+      Double4 prediction{};
       for (size_t axis = 0; axis < 3; ++axis) {
-        prediction[axis] =
+        prediction[static_cast<int>(axis)] =
             key ? rest_[at + axis] : PredictLinear(last[at + axis], before[at + axis]);
       }
-      put(*leader, correct(*leader, prediction));
-      next_details_[static_cast<size_t>(*leader)] = {};
+      put(place, ToInts(correct(place, prediction)));
     }
-    const Continuation by = choose(group, std::span<const int32_t>(next));
+    const Continuation by = choose(group);
+    const Double4 of_last = Splat(by.last);
+    const Double4 of_before = Splat(by.before);
+    const Double4 of_rest = Splat(by.rest);
     ParallelFor(end - begin, 2048, [&](int64_t from, int64_t to) {
       for (auto place = static_cast<int32_t>(begin + from); place < begin + to; ++place) {
         if (stencils_[place].leads()) continue;
-        const Grid3 blend = Blend(place, next);
-        const Grid3 position = correct(place, Predict(blend, details(place), by));
-        put(place, position);
-        for (size_t axis = 0; axis < 3; ++axis) {
-          next_details_[static_cast<size_t>(place)][axis] = position[axis] - blend[axis];
+        if (holds(place)) {
+          keep(place);
+          continue;
         }
+        const Double4 blend = Blend(place);
+        const Double4 detail = of_last * Widen(LastDetail(place)) +
+                               of_before * Widen(DetailBefore(place)) +
+                               of_rest * Widen(RestDetail(place));
+        const Double4 prediction =
+            Clamp(blend + Floor((detail + kContinuationOne / 2) * (1.0 / kContinuationOne)));
+        const Double4 position = correct(place, prediction);
+        put(place, ToInts(position));
+        next_[static_cast<size_t>(place)] = ToInts(position - blend);
       }
     });
   }

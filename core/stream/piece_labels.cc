@@ -102,19 +102,25 @@ std::string PieceLabels::Encode(std::span<const int32_t> labels) const {
     ToFrequencies(counts[context].data(), kSymbols, frequencies[context].data());
     for (const uint16_t frequency : frequencies[context]) head.Put(frequency);
   }
+  std::vector<RansSymbol> table;
+  for (const auto& of_context : frequencies) {
+    for (size_t symbol = 0; symbol < kSymbols; ++symbol) {
+      table.emplace_back(RangeOf(of_context, symbol));
+    }
+  }
   RansWriter writer;
+  uint16_t* symbols = writer.MoreSymbols(count);
   for (size_t at = 0; at < count; ++at) {
     const Choice& choice = choices[at];
     const uint32_t symbol = std::min(choice.code, kElse);
-    writer.PutSymbol(RangeOf(frequencies[choice.context], symbol));
+    *symbols++ = static_cast<uint16_t>(choice.context * kSymbols + symbol);
     if (symbol < kElse) continue;
     writer.PutBits(choice.code, 8);
     if (choice.code < kListed) continue;
-    const auto label = static_cast<uint32_t>(labels[at]);
-    writer.PutBits(label & 0xFFFF, 16);
-    writer.PutBits(label >> 16, 16);
+    writer.PutBits(static_cast<uint32_t>(labels[at]), 32);
   }
-  return coded + writer.Finish();
+  writer.EndSymbols(symbols);
+  return coded + writer.Finish(table);
 }
 
 absl::StatusOr<std::vector<int32_t>> PieceLabels::Decode(absl::string_view coded) const {
@@ -152,8 +158,7 @@ absl::StatusOr<std::vector<int32_t>> PieceLabels::Decode(absl::string_view coded
     }
     uint32_t label = kNone;
     if (code == kListed) {
-      label = reader.Bits(16);
-      label |= reader.Bits(16) << 16;
+      label = reader.Bits(32);
     } else if (code < ranking.count) {
       label = static_cast<uint32_t>(ranking.labels[code]);
     }

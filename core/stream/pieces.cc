@@ -1,150 +1,213 @@
 #include "core/stream/pieces.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
-namespace cleave {
+#include "core/base/parallel.h"
 
-void Pieces::Find(const EdgeGraph& graph) {
-  const int32_t places = graph.places();
-  labels_.assign(static_cast<size_t>(places), -1);
-  owners_.assign(static_cast<size_t>(places), -1);
-  leaders_.clear();
-  std::vector<int32_t> queue;
-  for (int32_t leader = 0; leader < places; ++leader) {
-    if (labels_[static_cast<size_t>(leader)] >= 0) continue;
-    const auto piece = static_cast<int32_t>(leaders_.size());
-    leaders_.push_back(leader);
-    labels_[static_cast<size_t>(leader)] = piece;
-    queue.assign(1, leader);
-    while (!queue.empty()) {
-      const int32_t place = queue.back();
-      queue.pop_back();
-      for (const int32_t other : graph.Neighbours(place)) {
-        if (other < 0 || labels_[static_cast<size_t>(other)] >= 0) continue;
-        labels_[static_cast<size_t>(other)] = piece;
-        queue.push_back(other);
-      }
-    }
+namespace cleave {
+namespace {
+
+constexpr int32_t kBlock = 64;
+constexpr int64_t kGrainBlocks = 16;
+
+}  // namespace
+
+void Pieces::Find(const NodeOrder& order, const EdgeGraph& graph) {
+  const auto count = static_cast<size_t>(graph.places());
+  places_.resize(count);
+  std::iota(places_.begin(), places_.end(), 0);
+  std::sort(places_.begin(), places_.end(), [&](int32_t a, int32_t b) {
+    const uint64_t code_a = order.codes[static_cast<size_t>(a)];
+    const uint64_t code_b = order.codes[static_cast<size_t>(b)];
+    return code_a != code_b ? code_a < code_b : a < b;
+  });
+  ranks_.resize(count);
+  for (size_t rank = 0; rank < count; ++rank) {
+    ranks_[static_cast<size_t>(places_[rank])] = static_cast<int32_t>(rank);
   }
+  for (std::vector<int32_t>* by_rank : {&clumps_, &firsts_, &joined_, &numbers_}) {
+    by_rank->assign(count, 0);
+  }
+  blocks_.resize((count + kBlock - 1) / kBlock);
+  labels_.assign(count, 0);
+  leaders_.clear();
+  const auto blocks = static_cast<int64_t>(blocks_.size());
+  ParallelFor(blocks, kGrainBlocks, [&](int64_t begin, int64_t end) {
+    for (int64_t block = begin; block < end; ++block) {
+      FindClumps(graph, static_cast<int32_t>(block));
+    }
+  });
+  ParallelFor(blocks, kGrainBlocks, [&](int64_t begin, int64_t end) {
+    for (int64_t block = begin; block < end; ++block) {
+      FindLinks(graph, static_cast<int32_t>(block));
+    }
+  });
+  Join();
 }
 
-// Walks start at all ends of the broken edges at once. Walks that meet become one; one that has
-// nowhere left to go has walked a whole piece. As soon as a former piece has a single walk left,
-// that one is what remains of it and need not go on. In each round every walk takes as many places
-// as any other, twice those of the round before: so what is small is walked to its end before much
-// of what is large.
 bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
-  constexpr int32_t kNone = -1;
-  struct Visit {
-    int32_t place;
-    int32_t next;  // in the list of its walk, or kNone
-  };
-  struct Walk {
-    int32_t joined;  // the walk that this one became part of, or itself
-    int32_t piece;   // the former piece that it is in
-    int32_t first;   // list of visits that have not had their turn, or kNone
-    int32_t last;
-    bool finished;
-  };
-  std::vector<Visit> visits;
-  std::vector<Walk> walks;
-  std::vector<int32_t> going;                     // walks that may have places to take
-  std::vector<int32_t> open(leaders_.size(), 0);  // walks that go on, of each former piece
+  std::vector<int32_t> touched;
   for (const int32_t edge : edges) {
     for (const int32_t place : graph.Ends(edge)) {
-      int32_t& owner = owners_[static_cast<size_t>(place)];
-      if (owner >= 0) continue;
-      owner = static_cast<int32_t>(walks.size());
-      const int32_t piece = labels_[static_cast<size_t>(place)];
-      walks.push_back({owner, piece, owner, owner, false});
-      visits.push_back({place, kNone});
-      going.push_back(owner);
-      ++open[static_cast<size_t>(piece)];
+      touched.push_back(ranks_[static_cast<size_t>(place)] / kBlock);
     }
   }
-  const auto root_of = [&](int32_t walk) {
-    while (walks[static_cast<size_t>(walk)].joined != walk) {
-      int32_t& joined = walks[static_cast<size_t>(walk)].joined;
-      joined = walks[static_cast<size_t>(joined)].joined;
-      walk = joined;
-    }
-    return walk;
-  };
-  const auto append = [&](Walk& walk, int32_t first, int32_t last) {
-    (walk.first == kNone ? walk.first : visits[static_cast<size_t>(walk.last)].next) = first;
-    walk.last = last;
-  };
-  bool split = false;
-  const auto take_place = [&](int32_t id, Walk& walk, int32_t& still_open) {
-    const Visit visit = visits[static_cast<size_t>(walk.first)];
-    walk.first = visit.next;
-    for (const int32_t other : graph.Neighbours(visit.place)) {
-      if (other < 0) continue;
-      int32_t& owner = owners_[static_cast<size_t>(other)];
-      if (owner == id) continue;
-      if (owner < 0) {
-        owner = id;
-        const auto at = static_cast<int32_t>(visits.size());
-        visits.push_back({other, kNone});
-        append(walk, at, at);
-        continue;
-      }
-      const int32_t met = root_of(owner);
-      if (met == id) continue;
-      Walk& other_walk = walks[static_cast<size_t>(met)];
-      other_walk.joined = id;
-      if (other_walk.first != kNone) append(walk, other_walk.first, other_walk.last);
-      --still_open;
-    }
-    if (walk.first == kNone && still_open > 1) {
-      walk.finished = true;
-      --still_open;
-      split = true;
-    }
-  };
-  for (int64_t turns = 1; !going.empty(); turns *= 2) {
-    size_t kept = 0;
-    for (const int32_t id : going) {
-      Walk& walk = walks[static_cast<size_t>(id)];
-      if (walk.joined != id) continue;
-      int32_t& still_open = open[static_cast<size_t>(walk.piece)];
-      for (int64_t turn = 0; turn < turns && still_open > 1 && walk.first != kNone; ++turn) {
-        take_place(id, walk, still_open);
-      }
-      if (still_open > 1 && walk.first != kNone) going[kept++] = id;
-    }
-    going.resize(kept);
-  }
-  // A finished walk's places take a label that nobody has; Number makes them final.
-  const auto fresh = static_cast<int32_t>(leaders_.size());
-  for (const auto& [place, next] : visits) {
-    int32_t& owner = owners_[static_cast<size_t>(place)];
-    const int32_t root = root_of(owner);
-    if (walks[static_cast<size_t>(root)].finished) {
-      labels_[static_cast<size_t>(place)] = fresh + root;
-    }
-    owner = -1;
-  }
-  if (split) {
-    leaders_.resize(static_cast<size_t>(fresh) + walks.size());  // as many labels as may occur
-    Number();
-  }
-  return split;
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  const auto count = static_cast<int64_t>(touched.size());
+  ParallelFor(count, kGrainBlocks, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) FindClumps(graph, touched[static_cast<size_t>(at)]);
+  });
+  // A link stands for all edges between two clumps. Where a clump came apart its block's links are
+  // all found anew, so that no edge is without one.
+  ParallelFor(count, kGrainBlocks, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) FindLinks(graph, touched[static_cast<size_t>(at)]);
+  });
+  return Join();
 }
 
-void Pieces::Number() {
-  std::vector<int32_t> numbers(leaders_.size(), -1);
-  leaders_.clear();
-  for (size_t place = 0; place < labels_.size(); ++place) {
-    int32_t& number = numbers[static_cast<size_t>(labels_[place])];
-    if (number < 0) {
-      number = static_cast<int32_t>(leaders_.size());
-      leaders_.push_back(static_cast<int32_t>(place));
+void Pieces::FindClumps(const EdgeGraph& graph, int32_t block) {
+  const int32_t begin = block * kBlock;
+  const int32_t size = std::min(kBlock, graph.places() - begin);
+  std::array<uint64_t, kBlock> joins;  // by place of the block: a bit for each that an edge joins
+  for (int32_t at = 0; at < size; ++at) {
+    uint64_t bits = 0;
+    for (const int32_t other : graph.Neighbours(places_[static_cast<size_t>(begin + at)])) {
+      // Without branches, which nobody could predict.
+      const auto place = static_cast<size_t>(std::max(other, ~other));
+      const auto offset = static_cast<uint32_t>(ranks_[place] - begin);
+      bits |= uint64_t{offset < kBlock && other >= 0} << (offset % kBlock);
     }
-    labels_[place] = number;
+    joins[static_cast<size_t>(at)] = bits;
   }
+  std::vector<int32_t>& clumps = blocks_[static_cast<size_t>(block)].clumps;
+  clumps.clear();
+  uint64_t left = size == kBlock ? ~uint64_t{0} : (uint64_t{1} << size) - 1;
+  while (left != 0) {
+    const int32_t clump = begin + std::countr_zero(left);
+    clumps.push_back(clump);
+    int32_t first = graph.places();
+    for (uint64_t open = left & -left; open != 0;) {
+      const int at = std::countr_zero(open);
+      left &= ~(uint64_t{1} << at);
+      open = (open | joins[static_cast<size_t>(at)]) & left;
+      const auto rank = static_cast<size_t>(begin + at);
+      clumps_[rank] = clump;
+      first = std::min(first, places_[rank]);
+    }
+    firsts_[static_cast<size_t>(clump)] = first;
+  }
+}
+
+void Pieces::FindLinks(const EdgeGraph& graph, int32_t block) {
+  const int32_t begin = block * kBlock;
+  const int32_t end = std::min(begin + kBlock, graph.places());
+  std::vector<Link>& links = blocks_[static_cast<size_t>(block)].links;
+  links.clear();
+  // Most edges join clumps that one just joined; a few that slip through are harmless.
+  std::array<Link, 64> recent;
+  recent.fill({-1, -1});
+  std::array<int32_t, 256> outside;  // ranks that edges of one place lead to
+  for (int32_t rank = begin; rank < end; ++rank) {
+    const int32_t from = clumps_[static_cast<size_t>(rank)];
+    std::span<const int32_t> others = graph.Neighbours(places_[static_cast<size_t>(rank)]);
+    while (!others.empty()) {
+      size_t count = 0;
+      const std::span<const int32_t> some = others.first(std::min(others.size(), outside.size()));
+      for (const int32_t other : some) {
+        const int32_t other_rank = ranks_[static_cast<size_t>(std::max(other, ~other))];
+        outside[count] = other_rank;
+        count += static_cast<size_t>((other_rank < begin || other_rank >= end) && other >= 0);
+      }
+      others = others.subspan(some.size());
+      for (size_t at = 0; at < count; ++at) {
+        const int32_t to = clumps_[static_cast<size_t>(outside[at])];
+        Link& same = recent[static_cast<size_t>(to / kBlock + to) % recent.size()];
+        if (same.from == from && same.to == to) continue;
+        same = {from, to};
+        links.push_back({rank, outside[at]});
+      }
+    }
+  }
+}
+
+int32_t Pieces::Root(int32_t clump) {
+  while (joined_[static_cast<size_t>(clump)] != clump) {
+    int32_t& joined = joined_[static_cast<size_t>(clump)];
+    joined = joined_[static_cast<size_t>(joined)];
+    clump = joined;
+  }
+  return clump;
+}
+
+// Joins clumps to pieces and numbers these. True if they are more than before.
+bool Pieces::Join() {
+  int32_t pieces = 0;
+  for (const Block& block : blocks_) {
+    for (const int32_t clump : block.clumps) joined_[static_cast<size_t>(clump)] = clump;
+    pieces += static_cast<int32_t>(block.clumps.size());
+  }
+  for (const Block& block : blocks_) {
+    for (const Link& link : block.links) {
+      const int32_t from = Root(clumps_[static_cast<size_t>(link.from)]);
+      const int32_t to = Root(clumps_[static_cast<size_t>(link.to)]);
+      if (from == to) continue;
+      joined_[static_cast<size_t>(std::max(from, to))] = std::min(from, to);
+      --pieces;
+    }
+  }
+  if (pieces == count()) return false;
+  // The first place of each piece is the least of its clumps'.
+  for (const Block& block : blocks_) {
+    for (const int32_t clump : block.clumps) {
+      int32_t& first = numbers_[static_cast<size_t>(Root(clump))];
+      if (Root(clump) == clump) first = firsts_[static_cast<size_t>(clump)];
+      first = std::min(first, firsts_[static_cast<size_t>(clump)]);
+    }
+  }
+  std::vector<std::pair<int32_t, int32_t>> roots;  // by first place
+  roots.reserve(static_cast<size_t>(pieces));
+  for (const Block& block : blocks_) {
+    for (const int32_t clump : block.clumps) {
+      if (Root(clump) == clump) roots.push_back({numbers_[static_cast<size_t>(clump)], clump});
+    }
+  }
+  std::sort(roots.begin(), roots.end());
+  // Of a former piece that has several parts, all are new.
+  std::vector<int32_t> parts(leaders_.size(), 0);
+  if (!leaders_.empty()) {
+    for (const auto& [first, root] : roots) {
+      ++parts[static_cast<size_t>(labels_[static_cast<size_t>(first)])];
+    }
+  }
+  is_new_.clear();
+  for (const auto& [first, root] : roots) {
+    is_new_.push_back(leaders_.empty() ||
+                              parts[static_cast<size_t>(labels_[static_cast<size_t>(first)])] > 1
+                          ? 1
+                          : 0);
+  }
+  leaders_.clear();
+  for (const auto& [first, root] : roots) {
+    numbers_[static_cast<size_t>(root)] = static_cast<int32_t>(leaders_.size());
+    leaders_.push_back(first);
+  }
+  for (const Block& block : blocks_) {
+    for (const int32_t clump : block.clumps) {
+      numbers_[static_cast<size_t>(clump)] = numbers_[static_cast<size_t>(Root(clump))];
+    }
+  }
+  ParallelFor(static_cast<int64_t>(labels_.size()), 8192, [&](int64_t begin, int64_t end) {
+    for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
+      labels_[place] = numbers_[static_cast<size_t>(clumps_[static_cast<size_t>(ranks_[place])])];
+    }
+  });
+  return true;
 }
 
 }  // namespace cleave

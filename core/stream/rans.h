@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,17 +25,43 @@ struct SymbolRange {
   uint16_t frequency = 0;
 };
 
-// Collects symbols and plain bits; Finish codes them.
+// The same as an encoder wants it: states are divided by multiplication.
+struct RansSymbol {
+  RansSymbol() = default;
+  explicit RansSymbol(SymbolRange range)
+      : reciprocal((uint64_t{1} << 63) / range.frequency + 1),
+        limit(uint32_t{range.frequency} << 20),
+        complement(static_cast<uint16_t>(4096 - range.frequency)),
+        start(range.start) {}
+
+  uint64_t reciprocal = 0;  // above 2^63 / frequency: exact for states of 32 bits
+  uint32_t limit = 0;       // states from here on give off a word first
+  uint16_t complement = 0;
+  uint16_t start = 0;
+};
+
+// Collects symbols and plain bits; Finish codes them. Keeps its memory from one use to the next.
 class RansWriter {
  public:
   void Clear();
-  void PutSymbol(SymbolRange range) { symbols_.push_back(range); }
-  void PutBits(uint32_t bits, uint32_t count);  // at most 26
+  // Room for this many symbols more, where the caller writes them: numbers in the table that Finish
+  // gets. EndSymbols says how far it came.
+  uint16_t* MoreSymbols(size_t most);
+  void EndSymbols(const uint16_t* end) { count_ = static_cast<size_t>(end - symbols_.data()); }
+  // At most 32 bits, those above `count` zero.
+  void PutBits(uint32_t bits, uint32_t count) {
+    pending_ |= uint64_t{bits} << pending_count_;
+    pending_count_ += count;
+    if (pending_count_ >= 32) FlushWord();
+  }
   // u32 number of words, four states, the words, the bits.
-  std::string Finish();
+  std::string Finish(std::span<const RansSymbol> table);
 
  private:
-  std::vector<SymbolRange> symbols_;
+  void FlushWord();
+
+  std::vector<uint16_t> symbols_;
+  size_t count_ = 0;
   std::vector<uint16_t> words_;
   std::string plain_;
   uint64_t pending_ = 0;
@@ -53,11 +81,9 @@ class RansReader {
     if (state < kRansLow) state = state << 16 | NextWord();
     at_ = (at_ + 1) % kRansStates;
   }
+  // At most 32.
   uint32_t Bits(uint32_t count) {
-    while (pending_count_ < count) {
-      pending_ |= uint64_t{NextByte()} << pending_count_;
-      pending_count_ += 8;
-    }
+    if (pending_count_ < count) Refill(count);
     const auto bits = static_cast<uint32_t>(pending_ & ((uint64_t{1} << count) - 1));
     pending_ >>= count;
     pending_count_ -= count;
@@ -67,8 +93,18 @@ class RansReader {
   bool Finish() const;
 
  private:
-  uint32_t NextWord();
-  uint32_t NextByte();
+  uint32_t NextWord() {
+    if (words_left_ == 0) {
+      ok_ = false;
+      return 0;
+    }
+    uint16_t word = 0;
+    std::memcpy(&word, words_, sizeof(word));
+    words_ += sizeof(word);
+    --words_left_;
+    return word;
+  }
+  void Refill(uint32_t count);
 
   std::array<uint32_t, kRansStates> states_{};
   size_t at_ = 0;

@@ -6,72 +6,109 @@
 
 namespace cleave {
 
+namespace {
+
+constexpr size_t kOfClass = kMasks + kTokens;  // symbols
+
 template <size_t kSymbols>
-void ResidualCoder::Alphabet<kSymbols>::Fill(const std::array<uint64_t, kSymbols>& counts,
-                                             Direction direction) {
+std::array<SymbolRange, kSymbols> RangesOf(const std::array<uint64_t, kSymbols>& counts) {
   std::array<uint16_t, kSymbols> frequencies;
   ToFrequencies(counts.data(), kSymbols, frequencies.data());
-  if (direction == Direction::kDecode) symbols.resize(kFrequencyOne);
+  std::array<SymbolRange, kSymbols> ranges;
   uint16_t start = 0;
   for (size_t symbol = 0; symbol < kSymbols; ++symbol) {
     ranges[symbol] = {start, frequencies[symbol]};
-    if (!symbols.empty())
-      std::fill_n(symbols.begin() + start, frequencies[symbol], static_cast<uint8_t>(symbol));
     start = static_cast<uint16_t>(start + frequencies[symbol]);
   }
+  return ranges;
 }
 
-ResidualCoder::ResidualCoder(const ResidualHistory& history, bool fresh, Direction direction)
-    : masks_(kClasses), tokens_(kClasses) {
-  const SymbolCounts prior = fresh ? PriorCounts() : SymbolCounts();
-  const SymbolCounts& counts = fresh ? prior : history.counts;
-  for (size_t c = 0; c < kClasses; ++c) {
-    masks_[c].Fill(counts.masks[c], direction);
-    tokens_[c].Fill(counts.tokens[c], direction);
+template <typename Alphabet, size_t kSymbols>
+void FillAlphabet(const std::array<uint64_t, kSymbols>& counts, Alphabet& alphabet) {
+  alphabet.ranges = RangesOf(counts);
+  for (size_t symbol = 0; symbol < kSymbols; ++symbol) {
+    std::fill_n(alphabet.symbols.begin() + alphabet.ranges[symbol].start,
+                alphabet.ranges[symbol].frequency, static_cast<uint8_t>(symbol));
   }
 }
 
-void ResidualCoder::Encode(std::span<const int32_t> places, std::span<const int32_t> residuals,
-                           std::span<uint16_t> activities, SymbolCounts& counts,
-                           RansWriter& writer) const {
+}  // namespace
+
+ResidualCoder::ResidualCoder(const ResidualHistory& history, bool fresh, Direction direction) {
+  const SymbolCounts prior = fresh ? PriorCounts() : SymbolCounts();
+  const SymbolCounts& counts = fresh ? prior : history.counts;
+  if (direction == Direction::kDecode) {
+    to_decode_ = std::make_unique<ToDecode>();
+    for (size_t c = 0; c < kClasses; ++c) {
+      FillAlphabet(counts.masks[c], to_decode_->masks[c]);
+      FillAlphabet(counts.tokens[c], to_decode_->tokens[c]);
+    }
+    return;
+  }
+  to_encode_.reserve(kClasses * kOfClass);
+  for (size_t c = 0; c < kClasses; ++c) {
+    for (const SymbolRange range : RangesOf(counts.masks[c])) to_encode_.emplace_back(range);
+    for (const SymbolRange range : RangesOf(counts.tokens[c])) to_encode_.emplace_back(range);
+  }
+}
+
+std::string ResidualCoder::Encode(std::span<const int32_t> places,
+                                  std::span<const Int32x4> residuals,
+                                  std::span<uint16_t> activities, SymbolCounts& counts,
+                                  RansWriter& writer) const {
+  writer.Clear();
+  uint16_t* symbols = writer.MoreSymbols(4 * places.size());
+  bool all_zero = true;
   for (const int32_t place : places) {
-    const int32_t* r = residuals.data() + 3 * static_cast<size_t>(place);
+    const Int32x4 r = residuals[static_cast<size_t>(place)];
     uint16_t& activity = activities[static_cast<size_t>(place)];
     const uint8_t c = ClassOf(activity);
-    const auto mask = static_cast<size_t>(r[0] != 0) | static_cast<size_t>(r[1] != 0) << 1 |
-                      static_cast<size_t>(r[2] != 0) << 2;
+    const size_t mask = SignBits(r != 0) & 7;
     ++counts.masks[c][mask];
-    writer.PutSymbol(masks_[c].ranges[mask]);
+    *symbols++ = static_cast<uint16_t>(c * kOfClass + mask);
+    if (mask == 0) {
+      activity = NextActivity(activity, 0);
+      continue;
+    }
+    all_zero = false;
     int64_t magnitude = 0;
-    for (size_t axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       if (r[axis] == 0) continue;
       const Token token = ToToken(r[axis]);
       ++counts.tokens[c][token.symbol];
-      writer.PutSymbol(tokens_[c].ranges[token.symbol]);
+      *symbols++ = static_cast<uint16_t>(c * kOfClass + kMasks + token.symbol);
       writer.PutBits(token.bits, token.bit_count);
       magnitude += std::abs(r[axis]);
     }
     activity = NextActivity(activity, magnitude);
   }
+  writer.EndSymbols(symbols);
+  return all_zero ? std::string() : writer.Finish(to_encode_);
 }
 
 absl::Status ResidualCoder::Decode(absl::string_view coded, std::span<const int32_t> places,
-                                   std::span<int32_t> residuals, std::span<uint16_t> activities,
+                                   std::span<Int32x4> residuals, std::span<uint16_t> activities,
                                    SymbolCounts& counts) const {
   RansReader reader(coded);
   for (const int32_t place : places) {
-    int32_t* r = residuals.data() + 3 * static_cast<size_t>(place);
     uint16_t& activity = activities[static_cast<size_t>(place)];
     const uint8_t c = ClassOf(activity);
-    const size_t mask = masks_[c].symbols[reader.Slot()];
-    reader.Take(masks_[c].ranges[mask]);
+    const Alphabet<kMasks>& masks = to_decode_->masks[c];
+    const size_t mask = masks.symbols[reader.Slot()];
+    reader.Take(masks.ranges[mask]);
     ++counts.masks[c][mask];
+    Int32x4 r{};
+    if (mask == 0) {
+      residuals[static_cast<size_t>(place)] = r;
+      activity = NextActivity(activity, 0);
+      continue;
+    }
+    const Alphabet<kTokens>& tokens = to_decode_->tokens[c];
     int64_t magnitude = 0;
-    for (size_t axis = 0; axis < 3; ++axis) {
-      r[axis] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
       if ((mask >> axis & 1) == 0) continue;
-      const size_t token = tokens_[c].symbols[reader.Slot()];
-      reader.Take(tokens_[c].ranges[token]);
+      const size_t token = tokens.symbols[reader.Slot()];
+      reader.Take(tokens.ranges[token]);
       ++counts.tokens[c][token];
       uint32_t m = static_cast<uint32_t>(token);
       uint32_t bits = 0;
@@ -87,6 +124,7 @@ absl::Status ResidualCoder::Decode(absl::string_view coded, std::span<const int3
       r[axis] = (bits & 1) != 0 ? -size : size;
       magnitude += size;
     }
+    residuals[static_cast<size_t>(place)] = r;
     activity = NextActivity(activity, magnitude);
   }
   return reader.Finish() ? absl::OkStatus()

@@ -1,13 +1,16 @@
 #ifndef CLEAVE_CORE_STREAM_RESIDUAL_CODER_H_
 #define CLEAVE_CORE_STREAM_RESIDUAL_CODER_H_
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
+#include "core/base/int4.h"
 #include "core/stream/rans.h"
 #include "core/stream/residual_model.h"
 
@@ -22,14 +25,16 @@ class ResidualCoder {
   enum class Direction { kEncode, kDecode };
   ResidualCoder(const ResidualHistory& history, bool fresh, Direction direction);
 
-  // Gives the writer what `places`, whose classes follow from `activities`, have in `residuals`
-  // (x, y, z of each place), counts it and makes their next activities.
-  void Encode(std::span<const int32_t> places, std::span<const int32_t> residuals,
-              std::span<uint16_t> activities, SymbolCounts& counts, RansWriter& writer) const;
+  // Codes what `places`, whose classes follow from `activities`, have in `residuals` (x, y, z of
+  // each place and 0), counts it and makes their next activities. Nothing if all are zero. `writer`
+  // is scratch.
+  std::string Encode(std::span<const int32_t> places, std::span<const Int32x4> residuals,
+                     std::span<uint16_t> activities, SymbolCounts& counts,
+                     RansWriter& writer) const;
 
   // The reverse. Error: DataLoss.
   absl::Status Decode(absl::string_view coded, std::span<const int32_t> places,
-                      std::span<int32_t> residuals, std::span<uint16_t> activities,
+                      std::span<Int32x4> residuals, std::span<uint16_t> activities,
                       SymbolCounts& counts) const;
 
   // What a chunk without any residual adds: nothing is coded for it.
@@ -40,11 +45,14 @@ class ResidualCoder {
   template <size_t kSymbols>
   struct Alphabet {
     std::array<SymbolRange, kSymbols> ranges;
-    std::vector<uint8_t> symbols;  // of each slot, to decode
-    void Fill(const std::array<uint64_t, kSymbols>& counts, Direction direction);
+    std::array<uint8_t, kFrequencyOne> symbols;  // of each slot
   };
-  std::vector<Alphabet<kMasks>> masks_;    // by class
-  std::vector<Alphabet<kTokens>> tokens_;  // by class
+  struct ToDecode {
+    std::array<Alphabet<kMasks>, kClasses> masks;
+    std::array<Alphabet<kTokens>, kClasses> tokens;
+  };
+  std::vector<RansSymbol> to_encode_;    // of each class in turn the masks, then the tokens
+  std::unique_ptr<ToDecode> to_decode_;  // one of the two is there
 };
 
 }  // namespace cleave

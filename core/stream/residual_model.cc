@@ -5,8 +5,6 @@
 namespace cleave {
 namespace {
 
-constexpr std::array<uint32_t, kClasses - 1> kThresholds = {1,  2,  3,  4,   6,   9,   14,  20,
-                                                            32, 48, 80, 128, 224, 448, 1024};
 constexpr std::array<uint16_t, kClasses> kMiddles = {0,  1,  2,  3,   5,   7,   11,  17,
                                                      25, 39, 62, 101, 170, 316, 680, 2400};
 
@@ -57,11 +55,6 @@ SymbolCounts PriorCounts() {
     }
   }
   return prior;
-}
-
-uint8_t ClassOf(uint32_t activity) {
-  return static_cast<uint8_t>(std::upper_bound(kThresholds.begin(), kThresholds.end(), activity) -
-                              kThresholds.begin());
 }
 
 uint16_t ActivityOf(uint8_t activity_class) { return kMiddles[activity_class]; }

@@ -54,8 +54,24 @@ struct ResidualHistory {
   bool fresh = true;  // no delta since the key frame: classes are by group, counts are the prior
 };
 
+// The least activity of each class but the first.
+inline constexpr std::array<uint32_t, kClasses - 1> kThresholds = {
+    1, 2, 3, 4, 6, 9, 14, 20, 32, 48, 80, 128, 224, 448, 1024};
+// The class of every activity up to the last of them.
+inline constexpr std::array<uint8_t, kThresholds.back() + 1> kClassTable = [] {
+  std::array<uint8_t, kThresholds.back() + 1> table{};
+  uint8_t activity_class = 0;
+  for (uint32_t activity = 0; activity < table.size(); ++activity) {
+    if (activity == kThresholds[activity_class]) ++activity_class;
+    table[activity] = activity_class;
+  }
+  return table;
+}();
+
 // The class of an activity, and an activity in the middle of a class.
-uint8_t ClassOf(uint32_t activity);
+inline uint8_t ClassOf(uint32_t activity) {
+  return kClassTable[std::min(activity, kThresholds.back())];
+}
 uint16_t ActivityOf(uint8_t activity_class);
 
 // The activity after residuals that add up, without signs, to `magnitude`.

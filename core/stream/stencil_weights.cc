@@ -12,35 +12,40 @@ namespace cleave {
 std::array<int32_t, kStencilNodes> StencilWeights(const Vec3& centre,
                                                   std::span<const Vec3> neighbours) {
   const size_t count = neighbours.size();
-  std::array<Vec3, kStencilNodes> offsets{};
-  std::array<double, kStencilNodes> squares{};
-  double h = 0;
+  // By coordinate, so that loops over neighbours are of vectors; those that are not there lie at
+  // the centre and add nothing.
+  using Row = std::array<double, kStencilNodes>;
+  Row dx{}, dy{}, dz{}, squares, g, fx, fy, fz;
   for (size_t k = 0; k < count; ++k) {
-    for (size_t axis = 0; axis < 3; ++axis) offsets[k][axis] = neighbours[k][axis] - centre[axis];
-    const Vec3& d = offsets[k];
-    squares[k] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    h = std::max(h, squares[k]);
+    dx[k] = neighbours[k][0] - centre[0];
+    dy[k] = neighbours[k][1] - centre[1];
+    dz[k] = neighbours[k][2] - centre[2];
   }
-  std::array<double, kStencilNodes> g{};
+  for (size_t k = 0; k < kStencilNodes; ++k) {
+    squares[k] = dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k];
+  }
+  double h = 0;
+  for (size_t k = 0; k < count; ++k) h = std::max(h, squares[k]);
+  for (size_t k = 0; k < kStencilNodes; ++k) {
+    const double u = squares[k] / h;
+    g[k] = 1.0 / (u * u + 0.02);
+    const double f = g[k] / h;
+    fx[k] = f * dx[k];
+    fy[k] = f * dy[k];
+    fz[k] = f * dz[k];
+  }
   double xx = 1e-4, yy = 1e-4, zz = 1e-4, xy = 0, xz = 0, yz = 0;
   double bx = 0, by = 0, bz = 0;
   for (size_t k = 0; k < count; ++k) {
-    const double u = squares[k] / h;
-    g[k] = 1.0 / (u * u + 0.02);
-    const Vec3& d = offsets[k];
-    const double f = g[k] / h;
-    const double fx = f * d[0];
-    const double fy = f * d[1];
-    const double fz = f * d[2];
-    xx = xx + fx * d[0];
-    xy = xy + fx * d[1];
-    xz = xz + fx * d[2];
-    yy = yy + fy * d[1];
-    yz = yz + fy * d[2];
-    zz = zz + fz * d[2];
-    bx = bx + fx;
-    by = by + fy;
-    bz = bz + fz;
+    xx = xx + fx[k] * dx[k];
+    xy = xy + fx[k] * dy[k];
+    xz = xz + fx[k] * dz[k];
+    yy = yy + fy[k] * dy[k];
+    yz = yz + fy[k] * dz[k];
+    zz = zz + fz[k] * dz[k];
+    bx = bx + fx[k];
+    by = by + fy[k];
+    bz = bz + fz[k];
   }
   // M v = b by elimination.
   const double lxy = xy / xx;
@@ -55,19 +60,19 @@ std::array<int32_t, kStencilNodes> StencilWeights(const Vec3& centre,
   const double vy = cy / myy - lyz * vz;
   const double vx = (bx / xx - lxy * vy) - lxz * vz;
 
-  std::array<double, kStencilNodes> w{};
-  double sum = 0;
-  for (size_t k = 0; k < count; ++k) {
-    const Vec3& d = offsets[k];
-    w[k] = g[k] * (1.0 - (d[0] * vx + d[1] * vy + d[2] * vz));
-    sum = sum + w[k];
+  Row w, shares;
+  for (size_t k = 0; k < kStencilNodes; ++k) {
+    w[k] = g[k] * (1.0 - (dx[k] * vx + dy[k] * vy + dz[k] * vz));
   }
+  double sum = 0;
+  for (size_t k = 0; k < count; ++k) sum = sum + w[k];
+  for (size_t k = 0; k < kStencilNodes; ++k) shares[k] = std::floor(w[k] / sum * 32768.0 + 0.5);
   std::array<int32_t, kStencilNodes> weights{};
   int32_t left = kStencilOne;
   for (size_t k = 0; k < count; ++k) {
-    const double share = std::floor(w[k] / sum * 32768.0 + 0.5);
-    // Neighbours at the centre itself, or too near for the arithmetic, share alike.
-    if (!(std::abs(share) <= 0x1p25)) {
+    // Neighbours at the centre itself, or too near for the arithmetic, share alike. So a blend's
+    // sum stays below 2^52.
+    if (!(std::abs(shares[k]) <= 0x1p18)) {
       weights.fill(0);
       left = kStencilOne;
       for (size_t other = 0; other < count; ++other) {
@@ -76,7 +81,7 @@ std::array<int32_t, kStencilNodes> StencilWeights(const Vec3& centre,
       }
       break;
     }
-    weights[k] = static_cast<int32_t>(share);
+    weights[k] = static_cast<int32_t>(shares[k]);
     left -= weights[k];
   }
   weights[0] += left;

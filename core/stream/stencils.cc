@@ -1,31 +1,45 @@
 #include "core/stream/stencils.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "core/base/parallel.h"
-#include "core/mesh/morton.h"
 
 namespace cleave {
 namespace {
 
 constexpr size_t kEnoughNear = 7;          // places over one edge that make a search stop
 constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther out
-constexpr int kCubeSizes = 3;              // sizes of cube that are tried
 
 // The nearest few of the places that it is offered, each once, by distance and then by place.
 class Nearest {
  public:
-  explicit Nearest(const Vec3& centre) : centre_(centre) {}
+  explicit Nearest(const Vec3& centre) : centre_(centre) {
+    squares_.fill(std::numeric_limits<double>::infinity());
+  }
 
   void Offer(int32_t place, const Vec3& position) {
     const double dx = position[0] - centre_[0];
     const double dy = position[1] - centre_[1];
     const double dz = position[2] - centre_[2];
     const double square = dx * dx + dy * dy + dz * dz;
+    if (square <= squares_.back()) Insert(place, square);
+  }
+
+  void Clear() {
+    count_ = 0;
+    squares_.fill(std::numeric_limits<double>::infinity());
+  }
+  size_t count() const { return count_; }
+  int32_t operator[](size_t at) const { return places_[at]; }
+
+ private:
+  void Insert(int32_t place, double square) {
     size_t at = count_;
     while (at > 0 &&
            (square < squares_[at - 1] || (square == squares_[at - 1] && place < places_[at - 1]))) {
@@ -41,50 +55,84 @@ class Nearest {
     places_[at] = place;
   }
 
-  void Clear() { count_ = 0; }
-  size_t count() const { return count_; }
-  int32_t operator[](size_t at) const { return places_[at]; }
-
- private:
   Vec3 centre_;
   size_t count_ = 0;
-  std::array<double, kStencilNodes> squares_{};
+  std::array<double, kStencilNodes> squares_;  // ascending; infinite behind the last
   std::array<int32_t, kStencilNodes> places_{};
 };
 
+// Places on their way to a Nearest: what is to be read of them is fetched meanwhile.
+class Candidates {
+ public:
+  Candidates(const std::vector<Vec3>& rest, Nearest& nearest) : rest_(rest), nearest_(nearest) {}
+
+  // Offers `place` sooner or later, if `wanted`.
+  void Add(int32_t place, bool wanted) {
+    __builtin_prefetch(rest_.data() + place);
+    places_[count_] = place;
+    count_ += static_cast<size_t>(wanted);
+    if (count_ == places_.size()) Flush([](int32_t) { return true; });
+  }
+  // Offers now those that were added and of which `is_wanted(place)`.
+  template <typename IsWanted>
+  void Flush(const IsWanted& is_wanted) {
+    for (size_t at = 0; at < count_; ++at) {
+      const int32_t place = places_[at];
+      if (is_wanted(place)) nearest_.Offer(place, rest_[static_cast<size_t>(place)]);
+    }
+    count_ = 0;
+  }
+  bool HasRoom() const { return count_ + 1 < places_.size(); }
+
+ private:
+  const std::vector<Vec3>& rest_;
+  Nearest& nearest_;
+  size_t count_ = 0;
+  std::array<int32_t, 256> places_;
+};
+
 // Offers the coarser places of the same piece in the 27 cubes around a place.
-void SearchCubes(const NodeOrder& order, size_t group, int32_t place, int bits,
-                 const Pieces& pieces, const std::vector<Vec3>& rest, Nearest& nearest) {
-  const std::vector<NodeOrder::Coarse>& coarser = order.coarser[group];
-  const uint64_t code = order.codes[static_cast<size_t>(place)] >> (3 * bits);
-  const std::array<int64_t, 3> cube = {static_cast<int64_t>(MortonCurve::Compact(code)),
-                                       static_cast<int64_t>(MortonCurve::Compact(code >> 1)),
-                                       static_cast<int64_t>(MortonCurve::Compact(code >> 2))};
-  const int64_t cubes = int64_t{1} << (21 - bits);
-  const int32_t piece = pieces[place];
-  for (int64_t x = std::max<int64_t>(cube[0] - 1, 0); x <= std::min(cube[0] + 1, cubes - 1); ++x) {
-    for (int64_t y = std::max<int64_t>(cube[1] - 1, 0); y <= std::min(cube[1] + 1, cubes - 1);
-         ++y) {
-      for (int64_t z = std::max<int64_t>(cube[2] - 1, 0); z <= std::min(cube[2] + 1, cubes - 1);
-           ++z) {
-        const uint64_t wanted = MortonCurve::Spread(static_cast<uint64_t>(x)) |
-                                MortonCurve::Spread(static_cast<uint64_t>(y)) << 1 |
-                                MortonCurve::Spread(static_cast<uint64_t>(z)) << 2;
-        auto found = std::lower_bound(
-            coarser.begin(), coarser.end(), wanted << (3 * bits),
-            [](const NodeOrder::Coarse& item, uint64_t least) { return item.code < least; });
-        for (; found != coarser.end() && found->code >> (3 * bits) == wanted; ++found) {
-          if (pieces[found->place] == piece) {
-            nearest.Offer(found->place, rest[static_cast<size_t>(found->place)]);
-          }
-        }
+void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coarser, uint64_t code,
+                 int bits, int32_t piece, const Pieces& pieces, Candidates& candidates) {
+  // Neighbouring cubes by arithmetic on each axis' bits in place.
+  constexpr uint64_t kX = 0x1249249249249249u;
+  const uint64_t inside = (uint64_t{1} << (3 * (21 - bits))) - 1;
+  const uint64_t cube = code >> (3 * bits);
+  std::array<std::array<uint64_t, 3>, 3> along;  // by axis
+  std::array<size_t, 3> counts{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const uint64_t mask = (kX << axis) & inside;
+    const uint64_t own = cube & mask;
+    const uint64_t one = uint64_t{1} << axis;
+    if (own != 0) along[axis][counts[axis]++] = (own - one) & mask;
+    along[axis][counts[axis]++] = own;
+    if (own != mask) along[axis][counts[axis]++] = ((own | ~mask) + one) & mask;
+  }
+  std::array<uint64_t, 27> cubes;
+  size_t count = 0;
+  for (size_t x = 0; x < counts[0]; ++x) {
+    for (size_t y = 0; y < counts[1]; ++y) {
+      for (size_t z = 0; z < counts[2]; ++z) {
+        cubes[count] = along[0][x] | along[1][y] | along[2][z];
+        index.Prefetch(cubes[count++]);
       }
     }
   }
+  const auto same_piece = [&](int32_t place) { return pieces[place] == piece; };
+  for (size_t at = 0; at < count; ++at) {
+    for (const NodeOrder::Coarse& found : index.In(cubes[at], coarser)) {
+      __builtin_prefetch(pieces.labels().data() + found.place);
+      candidates.Add(found.place, true);
+      if (!candidates.HasRoom()) candidates.Flush(same_piece);
+    }
+  }
+  candidates.Flush(same_piece);
 }
 
 bool Contains(const Stencil& stencil, int32_t place) {
-  return std::find(stencil.places.begin(), stencil.places.end(), place) != stencil.places.end();
+  bool contains = false;
+  for (const int32_t of_stencil : stencil.places) contains |= of_stencil == place;
+  return contains;
 }
 
 }  // namespace
@@ -95,7 +143,14 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
   stencils_.resize(rest_.size());
   reaches_.resize(rest_.size());
   is_touched_.assign(rest_.size(), 0);
-  pieces_.Find(graph_);
+  pieces_.Find(order, graph_);
+  cubes_.resize(static_cast<size_t>(order.groups()));
+  for (size_t group = 1; group < cubes_.size(); ++group) {
+    for (size_t size = 0; size < kCubeSizes; ++size) {
+      const int bits = order.cube_bits[group] + static_cast<int>(size);
+      if (bits <= 21) cubes_[group][size] = CubeIndex(order.coarser[group], bits);
+    }
+  }
   ParallelFor(graph_.places(), 256, [&](int64_t begin, int64_t end) {
     for (int64_t place = begin; place < end; ++place) Rebuild(order, static_cast<int32_t>(place));
   });
@@ -106,28 +161,44 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
   const size_t group = order.GroupOf(place);
   const int32_t coarse_end = order.group_begins[group];
   Nearest nearest(rest_[index]);
-  Reach reach = Reach::kOneEdge;
-  for (const int32_t other : graph_.Neighbours(place)) {
-    if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
-    if (other >= 0) nearest.Offer(other, rest_[static_cast<size_t>(other)]);
+  Candidates candidates(rest_, nearest);
+  const auto any = [](int32_t) { return true; };
+  // Breaks only take places away, so that a search never ends nearer than it did before.
+  Reach& reach = reaches_[index];
+  if (reach != Reach::kSpace) {
+    for (const int32_t other : graph_.Neighbours(place)) {
+      if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
+      candidates.Add(other, other >= 0);
+    }
+    candidates.Flush(any);
+    if (nearest.count() < kEnoughNear) reach = Reach::kTwoEdges;
   }
-  if (nearest.count() < kEnoughNear) {
-    reach = Reach::kTwoEdges;
+  if (reach == Reach::kTwoEdges) {
+    for (const int32_t between : graph_.Neighbours(place)) {
+      if (between >= 0) graph_.Prefetch(between);
+    }
+    // Places that came by lately, since most come by several times.
+    std::array<int32_t, 64> recent;
+    recent.fill(-1);
     for (const int32_t between : graph_.Neighbours(place)) {
       if (between < 0) continue;
       for (const int32_t other : graph_.Neighbours(between)) {
         if (other >= coarse_end) break;
-        if (other >= 0) nearest.Offer(other, rest_[static_cast<size_t>(other)]);
+        int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
+        candidates.Add(other, other >= 0 && same != other);
+        same = other;
       }
     }
+    candidates.Flush(any);
+    if (nearest.count() < kEnough) reach = Reach::kSpace;
   }
-  if (reach == Reach::kTwoEdges && nearest.count() < kEnough) {
-    reach = Reach::kSpace;
+  if (reach == Reach::kSpace) {
     nearest.Clear();
-    const int bits = order.cube_bits[group];
-    for (int size = 0; size < kCubeSizes && nearest.count() < kEnough; ++size) {
-      if (bits + size > 21) break;
-      SearchCubes(order, group, place, bits + size, pieces_, rest_, nearest);
+    for (size_t size = 0; size < kCubeSizes && nearest.count() < kEnough && group > 0; ++size) {
+      const int bits = order.cube_bits[group] + static_cast<int>(size);
+      if (bits > 21) break;
+      SearchCubes(cubes_[group][size], order.coarser[group], order.codes[index], bits,
+                  pieces_[place], pieces_, candidates);
     }
   }
   const int32_t leader = pieces_.leaders()[static_cast<size_t>(pieces_[place])];
@@ -138,7 +209,6 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
   Stencil& stencil = stencils_[index];
   stencil.places.fill(nearest.count() > 0 ? nearest[0] : -1);
   stencil.weights.fill(0);
-  reaches_[index] = reach;
   if (nearest.count() == 0) return;
   std::array<Vec3, kStencilNodes> neighbours;
   for (size_t k = 0; k < nearest.count(); ++k) {
@@ -150,10 +220,9 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
 }
 
 void Stencils::Touch(int32_t place) {
-  uint8_t& touched = is_touched_[static_cast<size_t>(place)];
-  if (touched != 0) return;
-  touched = 1;
-  touched_.push_back(place);
+  // Several threads may say so of one place.
+  std::atomic_ref<uint8_t>(is_touched_[static_cast<size_t>(place)])
+      .store(1, std::memory_order_relaxed);
 }
 
 // Breaks only take places out of a search's reach. So a stencil stays as it is while all of its
@@ -169,10 +238,26 @@ void Stencils::TouchAround(int32_t edge) {
       Touch(near);
     }
     for (const int32_t other : graph_.Neighbours(near)) {
-      if (other < 0 || reaches_[static_cast<size_t>(other)] != Reach::kTwoEdges) continue;
+      // Stencils have earlier places only.
+      if (other < far || reaches_[static_cast<size_t>(other)] != Reach::kTwoEdges) continue;
       if (Contains(stencils_[static_cast<size_t>(other)], far)) Touch(other);
     }
   }
+}
+
+// Of stencils that were found in space, those with places that are now of another piece.
+void Stencils::TouchInSpace() {
+  ParallelFor(graph_.places(), 8192, [&](int64_t begin, int64_t end) {
+    for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
+      const int32_t piece = pieces_[place];
+      if (reaches_[static_cast<size_t>(place)] != Reach::kSpace || !pieces_.IsNew(piece)) continue;
+      const Stencil& stencil = stencils_[static_cast<size_t>(place)];
+      if (stencil.leads()) continue;
+      for (const int32_t other : stencil.places) {
+        if (pieces_[other] != piece) Touch(place);
+      }
+    }
+  });
 }
 
 const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
@@ -181,8 +266,9 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
   if (std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end())) return touched_;
   if (!std::includes(broken.begin(), broken.end(), broken_.begin(), broken_.end())) {
     graph_.Heal();
+    std::fill(reaches_.begin(), reaches_.end(), Reach::kOneEdge);
     for (const int32_t edge : broken) graph_.Break(edge);
-    pieces_.Find(graph_);
+    pieces_.Find(order, graph_);
     touched_.resize(rest_.size());
     std::iota(touched_.begin(), touched_.end(), 0);
   } else {
@@ -190,16 +276,13 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     std::set_difference(broken.begin(), broken.end(), broken_.begin(), broken_.end(),
                         std::back_inserter(fresh));
     for (const int32_t edge : fresh) graph_.Break(edge);
-    for (const int32_t edge : fresh) TouchAround(edge);
-    if (pieces_.Split(graph_, fresh)) {
-      for (int32_t place = 0; place < graph_.places(); ++place) {
-        if (reaches_[static_cast<size_t>(place)] != Reach::kSpace) continue;
-        const Stencil& stencil = stencils_[static_cast<size_t>(place)];
-        if (stencil.leads()) continue;
-        for (const int32_t other : stencil.places) {
-          if (pieces_[other] != pieces_[place]) Touch(place);
-        }
-      }
+    ParallelFor(static_cast<int64_t>(fresh.size()), 256, [&](int64_t begin, int64_t end) {
+      for (int64_t at = begin; at < end; ++at) TouchAround(fresh[static_cast<size_t>(at)]);
+    });
+    if (pieces_.Split(graph_, fresh)) TouchInSpace();
+    for (size_t place = 0; place < is_touched_.size(); ++place) {
+      if (is_touched_[place] != 0) touched_.push_back(static_cast<int32_t>(place));
+      is_touched_[place] = 0;
     }
   }
   broken_.assign(broken.begin(), broken.end());
@@ -208,7 +291,6 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
       Rebuild(order, touched_[at]);
     }
   });
-  for (const int32_t place : touched_) is_touched_[static_cast<size_t>(place)] = 0;
   return touched_;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/vec3.h"
+#include "core/stream/cube_index.h"
 #include "core/stream/edge_graph.h"
 #include "core/stream/node_order.h"
 #include "core/stream/pieces.h"
@@ -15,10 +16,11 @@ namespace cleave {
 
 inline constexpr size_t kStencilNodes = 8;
 inline constexpr int32_t kStencilOne = 1 << 15;  // weights of a stencil add up to this
+inline constexpr size_t kCubeSizes = 3;          // sizes of cube that are searched around a place
 
 // Earlier places from which a place is predicted, all of its own piece. Unused ones repeat the
 // first, with weight 0. The leader of a piece has none: all are -1.
-struct Stencil {
+struct alignas(64) Stencil {
   std::array<int32_t, kStencilNodes> places{};
   std::array<int32_t, kStencilNodes> weights{};
 
@@ -39,7 +41,7 @@ class Stencils {
 
   // Brings everything to this set of broken edges (ascending ids in range). Where edges only broke,
   // the work is in proportion to what they touch. Returns the places whose stencil was made anew,
-  // in no particular order.
+  // ascending.
   const std::vector<int32_t>& SetBroken(const NodeOrder& order, std::span<const int32_t> broken);
 
   const Stencil& operator[](int32_t place) const { return stencils_[static_cast<size_t>(place)]; }
@@ -54,9 +56,11 @@ class Stencils {
   void Rebuild(const NodeOrder& order, int32_t place);
   void Touch(int32_t place);
   void TouchAround(int32_t edge);
+  void TouchInSpace();
 
   std::vector<Vec3> rest_;  // m, by place
   EdgeGraph graph_;
+  std::vector<std::array<CubeIndex, kCubeSizes>> cubes_;  // of each group's coarser places
   Pieces pieces_;
   std::vector<Stencil> stencils_;
   std::vector<Reach> reaches_;

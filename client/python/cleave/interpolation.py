@@ -249,7 +249,7 @@ def _weights(there, offsets, squares):
             w[:, j] = np.where(there[:, j], g[:, j] * (1 - (dx * vx + dy * vy + dz * vz)), 0)
             total = total + w[:, j]
         shares = np.floor(w / total[:, None] * 32768 + 0.5)
-        fits = ((np.abs(shares) <= 2.0**25) | ~there).all(axis=1)
+        fits = ((np.abs(shares) <= 2.0**18) | ~there).all(axis=1)
     counts = there.sum(axis=1)
     alike = np.where(there, 32768 // np.maximum(counts, 1)[:, None], 0)
     weights = np.where(there & fits[:, None], np.where(fits[:, None], shares, 0), 0)

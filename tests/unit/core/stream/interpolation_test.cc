@@ -249,6 +249,35 @@ TEST(InterpolationState, OneOfAnotherCoderIsRefused) {
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition) << status;
 }
 
+// The piece of each place, by the way of its unbroken edges to earlier places.
+std::vector<int32_t> FloodedPieces(const NodeOrder& order, const Body& body,
+                                   const std::vector<int32_t>& broken) {
+  std::vector<int32_t> places(order.nodes.size());
+  for (size_t place = 0; place < places.size(); ++place) {
+    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
+  }
+  std::vector<int32_t> first(places.size());
+  std::iota(first.begin(), first.end(), 0);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (size_t edge = 0; edge < body.edges.size(); ++edge) {
+      if (std::binary_search(broken.begin(), broken.end(), static_cast<int32_t>(edge))) continue;
+      int32_t& a = first[static_cast<size_t>(places[static_cast<size_t>(body.edges[edge][0])])];
+      int32_t& b = first[static_cast<size_t>(places[static_cast<size_t>(body.edges[edge][1])])];
+      changed |= a != b;
+      a = b = std::min(a, b);
+    }
+  }
+  std::vector<int32_t> leaders = first;
+  std::sort(leaders.begin(), leaders.end());
+  leaders.erase(std::unique(leaders.begin(), leaders.end()), leaders.end());
+  for (int32_t& place : first) {
+    place = static_cast<int32_t>(std::lower_bound(leaders.begin(), leaders.end(), place) -
+                                 leaders.begin());
+  }
+  return first;
+}
+
 TEST(Stencils, AreThoseOfTheBrokenEdgesHoweverTheseCameAbout) {
   const Body body = LatticeBody(9, 8, 7);
   const NodeOrder order = MakeNodeOrder(body.rest);
@@ -276,6 +305,7 @@ TEST(Stencils, AreThoseOfTheBrokenEdgesHoweverTheseCameAbout) {
     // From nothing in one go, by way of another set that has to heal.
     fresh.SetBroken(order, std::vector<int32_t>{0, 7, 100});
     fresh.SetBroken(order, broken);
+    EXPECT_EQ(kept.pieces().labels(), FloodedPieces(order, body, broken));
     EXPECT_EQ(kept.pieces().labels(), fresh.pieces().labels());
     EXPECT_EQ(kept.pieces().leaders(), fresh.pieces().leaders());
     for (int32_t place = 0; place < static_cast<int32_t>(by_place.size()); ++place) {

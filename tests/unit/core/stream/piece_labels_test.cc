@@ -24,10 +24,11 @@ PieceLabels LabelsOf(const Body& body) {
 
 // The pieces that are left when these edges break.
 std::vector<int32_t> PiecesOf(const Body& body, std::span<const int32_t> broken) {
-  EdgeGraph graph(MakeNodeOrder(body.rest), body.edges);
+  const NodeOrder order = MakeNodeOrder(body.rest);
+  EdgeGraph graph(order, body.edges);
   for (const int32_t edge : broken) graph.Break(edge);
   Pieces pieces;
-  pieces.Find(graph);
+  pieces.Find(order, graph);
   return pieces.labels();
 }
 
