@@ -56,6 +56,11 @@ class NamedPieces {
   bool broken(int32_t edge) const { return broken_[static_cast<size_t>(edge)] != 0; }
   // The smallest node of each piece. Together with the broken edges this is the whole state.
   std::vector<int32_t> FirstNodes() const;
+  // Bytes of an object for so many of each, every node a piece at worst.
+  static int64_t BytesOf(int64_t nodes, int64_t edges) {
+    return edges +
+           nodes * static_cast<int64_t>(sizeof(int64_t) + 3 * sizeof(int32_t) + sizeof(Piece));
+  }
   // Goes back, or on, to a state. Returns whether there is a node of each piece in `first_nodes`
   // and nothing else; if not, nothing changed.
   bool Reset(std::span<const int32_t> broken_edges, std::span<const int32_t> first_nodes);

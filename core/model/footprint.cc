@@ -11,6 +11,7 @@
 #include "core/base/vec3.h"
 #include "core/damage/edge_mask.h"
 #include "core/damage/fatigue.h"
+#include "core/damage/named_pieces.h"
 #include "core/model/collider_term.h"
 #include "core/model/edge_projected_term.h"
 #include "core/model/elastic_term.h"
@@ -141,7 +142,8 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
             edges * kInt +                                                       // thresholds, ids
             tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
             edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
-            nodes * kVec3 + tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses
+            NamedPieces::BytesOf(nodes, edges) + nodes * kVec3 +
+            tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses
   }
 
   const bool crushes = std::any_of(

@@ -23,7 +23,7 @@ namespace cleave {
 namespace {
 
 constexpr uint64_t kSavedMagic = 0x3145544154535643u;  // "CVSTATE1"
-constexpr uint32_t kSavedVersion = 3;
+constexpr uint32_t kSavedVersion = 4;
 
 // J, summed up since the start.
 struct Energies {
@@ -49,6 +49,11 @@ class BodySimulation final : public Simulation {
     fragments_ = LabelComponents(*model_.incidence, broken, labels);
     PublishPositions();
     PublishBroken();
+    if (Breaking* breaking = stepper_.breaking()) {
+      pieces_.emplace(*model_.mesh, *model_.incidence,
+                      NodeNames{model_.order.old_node, model_.order.new_node});
+      pieces_->Break(breaking->fracture().BrokenEdges());
+    }
   }
 
   absl::StatusOr<FrameReport> Advance(const StopFlag& stop) override {
@@ -76,6 +81,7 @@ class BodySimulation final : public Simulation {
     PublishBroken();
     report.broken_edges = static_cast<int64_t>(broken_edges_.size());
     report.new_broken_edges += report.broken_edges;
+    if (pieces_) report.events = NameEvents(steps.edge_breaks);
     report.break_passes = steps.break_passes;
     report.fracture_energy = energies_.fracture_energy;
     report.fracture_seconds = steps.fracture_seconds;
@@ -144,6 +150,7 @@ class BodySimulation final : public Simulation {
     out.PutVector(state_.displacements);
     out.PutVector(state_.velocities);
     if (!model_.releases.empty()) out.PutVector(state_.released);
+    if (pieces_) out.PutVector(pieces_->FirstNodes());
     out.PutBytes(SaveParts());
     out.Put(Crc32c(saved));
     return saved;
@@ -169,6 +176,8 @@ class BodySimulation final : public Simulation {
     state.displacements = in.GetVector<Double4>();
     state.velocities = in.GetVector<Double4>();
     if (!model_.releases.empty()) state.released = in.GetVector<uint8_t>();
+    std::vector<int32_t> first_nodes;
+    if (pieces_) first_nodes = in.GetVector<int32_t>();
     if (!in.ok()) return absl::DataLossError("the saved state is truncated");
     if (frame < 0 || state.displacements.size() != state_.displacements.size() ||
         state.velocities.size() != state_.velocities.size() ||
@@ -177,6 +186,9 @@ class BodySimulation final : public Simulation {
     const std::string parts_before = SaveParts();
     absl::Status status = stepper_.Restore(in);
     if (status.ok()) status = in.Finish("the saved state");
+    if (status.ok() && pieces_ &&
+        !pieces_->Reset(stepper_.breaking()->fracture().BrokenEdges(), first_nodes))
+      status = absl::DataLossError("the saved state names other pieces than it has");
     if (!status.ok()) {
       ByteReader undo(parts_before);
       CLEAVE_RETURN_IF_ERROR(stepper_.Restore(undo));
@@ -193,6 +205,28 @@ class BodySimulation final : public Simulation {
   uint64_t state_hash() const override { return StateHash::Of(Save()); }
 
  private:
+  FrameEvents NameEvents(std::span<const EdgeBreak> breaks) {
+    std::vector<int32_t> edges;
+    std::vector<EdgeBreakEvent> events;
+    for (const EdgeBreak& broken : breaks) {
+      const auto edge = static_cast<size_t>(broken.edge);
+      edges.push_back(broken.edge);
+      EdgeBreakEvent event;
+      event.edge = model_.fracture->client_edge[edge];
+      event.place = {broken.time, {0, 0, 0}, broken.position, broken.energy};
+      for (size_t i = 0; i < 2; ++i) {
+        const auto node = static_cast<size_t>(model_.incidence->edges[edge][i]);
+        event.nodes[i] = model_.order.old_node[node];
+        for (size_t axis = 0; axis < 3; ++axis)
+          event.place.rest[axis] += 0.5 * model_.mesh->rest_positions[node][axis];
+      }
+      std::sort(event.nodes.begin(), event.nodes.end());
+      events.push_back(event);
+    }
+    const std::span<const PieceSplit> splits = pieces_->Break(edges);
+    return MakeFrameEvents(std::move(events), splits, *pieces_, model_.order.new_node);
+  }
+
   // s; the same number however a run comes to it.
   double TimeOf(int64_t frame, int32_t step) const {
     return (static_cast<double>(frame) + static_cast<double>(step) / timing_.steps_per_frame) /
@@ -238,6 +272,7 @@ class BodySimulation final : public Simulation {
   int64_t frame_ = 0;
   Energies energies_;
   int64_t fragments_ = 0;
+  std::optional<NamedPieces> pieces_;  // where the body can break
   std::vector<Vec3> positions_;
   std::vector<int32_t> broken_edges_;
 };

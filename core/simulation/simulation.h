@@ -15,6 +15,7 @@
 #include "core/base/vec3.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
+#include "core/simulation/frame_events.h"
 
 namespace cleave {
 
@@ -53,6 +54,7 @@ struct FrameReport {
   std::optional<int64_t> sleeping_pieces;  // of these, at the end; absent where none may sleep
   std::vector<Vec3> motion_forces;       // N, force that each motion exerts on the body, at the end
   std::vector<ColliderPlace> colliders;  // at the end, in the scene's order
+  FrameEvents events;                    // what broke in this frame
   double assembly_seconds = 0;
   double linear_solve_seconds = 0;
   double fracture_seconds = 0;

@@ -1,6 +1,7 @@
 #include "core/solver/breaking.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -105,9 +106,17 @@ bool Breaking::BreakPass(const NodalVector& displacements) {
   const PlasticTets plastic = {plastic_record_of_, plastic_tets_};
   const PassResult result =
       fracture_.BreakPass(positions_, stresses_, plastic_tets_.empty() ? nullptr : &plastic);
-  for (const ChangedTet& changed : result.changed_tets) Weaken(changed.tet, displacements);
-  if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   newly_broken_ = result.broken_edges;
+  break_energies_.assign(newly_broken_.size(), 0);
+  double unshared = 0;
+  for (const ChangedTet& changed : result.changed_tets) {
+    const double before = TetEnergy(changed.tet, displacements);
+    Weaken(changed.tet, displacements);
+    unshared += ShareOut(changed.tet, before - TetEnergy(changed.tet, displacements));
+  }
+  for (double& energy : break_energies_)
+    energy += unshared / static_cast<double>(newly_broken_.size());
+  if (graph_) fracture_.LowerThresholds(graph_->Break(result.broken_edges));
   // A strand may tear whose edges others hold.
   stresses_are_last_ = result.broken_edges.empty() && result.changed_tets.empty();
   return !stresses_are_last_;
@@ -125,6 +134,25 @@ void Breaking::EndStep(const NodalVector& displacements) {
     fracture_.UpdateThresholds();
 }
 
+double Breaking::TetEnergy(int32_t tet, const NodalVector& displacements) const {
+  double energy = 0;
+  for (const auto& term : model_.tet_terms) energy += term->TetEnergy(tet, displacements);
+  return energy;
+}
+
+double Breaking::ShareOut(int32_t tet, double energy) {
+  std::array<size_t, 6> places{};
+  size_t count = 0;
+  for (const int32_t edge : model_.incidence->tet_edges[static_cast<size_t>(tet)]) {
+    const auto found = std::lower_bound(newly_broken_.begin(), newly_broken_.end(), edge);
+    if (found != newly_broken_.end() && *found == edge)
+      places[count++] = static_cast<size_t>(found - newly_broken_.begin());
+  }
+  for (size_t i = 0; i < count; ++i)
+    break_energies_[places[i]] += energy / static_cast<double>(count);
+  return count == 0 ? energy : 0;
+}
+
 void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
   const double factor = fracture_.damage_factors()[static_cast<size_t>(tet)];
   EdgeProjectedTerm* const projected = model_.fracture->edge_projected;
@@ -132,8 +160,7 @@ void Breaking::Weaken(int32_t tet, const NodalVector& displacements) {
     for (const auto& term : model_.tet_terms) term->SetDamageFactor(tet, factor);
     return;
   }
-  double energy = 0;
-  for (const auto& term : model_.tet_terms) energy += term->TetEnergy(tet, displacements);
+  const double energy = TetEnergy(tet, displacements);
   for (const auto& term : model_.tet_terms) {
     if (term.get() != projected) term->SetDamageFactor(tet, 0);
   }

@@ -43,8 +43,10 @@ class Breaking {
   // have.
   void LeaveOut(std::vector<uint8_t> tets) { left_out_ = std::move(tets); }
 
-  // The edges that the last pass broke, ascending; until the next.
+  // The edges that the last pass broke, ascending, and what each took (EdgeBreak::energy); until
+  // the next.
   std::span<const int32_t> newly_broken() const { return newly_broken_; }
+  std::span<const double> break_energies() const { return break_energies_; }
 
   // Keeps the present state, for RollBack to return to.
   void Mark();
@@ -66,6 +68,9 @@ class Breaking {
   int64_t bytes() const;
 
  private:
+  double TetEnergy(int32_t tet, const NodalVector& displacements) const;
+  // Adds what a tet has lost to `break_energies_`; returns what no edge of it took.
+  double ShareOut(int32_t tet, double energy);
   // Hands the damage of a tet to the terms, at the displacements of its break.
   void Weaken(int32_t tet, const NodalVector& displacements);
   // Hands all damage to the terms; `betas` are those of edge-projected tets, by tet.
@@ -93,6 +98,7 @@ class Breaking {
   bool stresses_are_last_ = false;         // those of the last solve
   std::vector<uint8_t> left_out_;          // a tet each, or empty
   std::span<const int32_t> newly_broken_;
+  std::vector<double> break_energies_;  // J, of these
   // Where tets are ductile: records of them, in the order of the plastic terms.
   std::vector<int32_t> plastic_record_of_;  // a tet each
   std::vector<PlasticTet> plastic_tets_;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
+
+#include "core/solver/edge_break.h"
 
 namespace cleave {
 
@@ -25,6 +28,7 @@ struct StepReport {
   double assembly_seconds = 0;
   double linear_solve_seconds = 0;
   double fracture_seconds = 0;
+  std::vector<EdgeBreak> edge_breaks;  // solver's ids; by step, pass and id
 };
 
 }  // namespace cleave

@@ -150,10 +150,11 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   const KineticEnergies intact = MovingEnergies(dt, state);
   KineticEnergies moving = intact;
   double fracture_energy = 0;
+  std::vector<EdgeBreak> breaks;
   if (all_asleep()) {
     // Stresses stay what they were.
   } else if (breaking_) {
-    CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, report));
+    CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, breaks, report));
     moving = MovingEnergies(dt, state);
   } else {
     Flow();
@@ -170,6 +171,8 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   integration += moving.change + intact.end - moving.end + flow.potential - flow.work;
   elastic_energy_ = newton_.elastic_energy() + left_out_energy_ - flow.potential;
 
+  for (EdgeBreak& broken : breaks) broken.time = end;
+  report.edge_breaks.insert(report.edge_breaks.end(), breaks.begin(), breaks.end());
   report.fracture_energy += fracture_energy;
   report.plastic_work += flow.work;
   report.integration_dissipation += integration;
@@ -198,7 +201,8 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
 }
 
 absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
-                            double& fracture_energy, double& integration, StepReport& report) {
+                            double& fracture_energy, double& integration,
+                            std::vector<EdgeBreak>& breaks, StepReport& report) {
   for (int32_t pass = 0; pass < model_.fracture->max_passes; ++pass) {
     {
       ScopedTimer timer(report.fracture_seconds);
@@ -208,6 +212,7 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
     for (const auto& term : model_.node_terms)
       term->EdgesBroke(breaking_->newly_broken(), displacements_);
     if (resting_) resting_->EdgesBroke(breaking_->newly_broken());
+    AddBreaks(breaks);
     ++report.break_passes;
     const double before = newton_.elastic_energy();
     CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
@@ -216,6 +221,22 @@ absl::Status Stepper::Break(double dt, const StopFlag& stop, const State& state,
   }
   Flow();
   return absl::OkStatus();
+}
+
+void Stepper::AddBreaks(std::vector<EdgeBreak>& breaks) const {
+  const std::span<const int32_t> edges = breaking_->newly_broken();
+  for (size_t i = 0; i < edges.size(); ++i) {
+    EdgeBreak broken;
+    broken.edge = edges[i];
+    broken.energy = breaking_->break_energies()[i];
+    Double4 middle = Splat(0);
+    for (const int32_t node : model_.incidence->edges[static_cast<size_t>(edges[i])]) {
+      const auto n = static_cast<size_t>(node);
+      middle += ToDouble4(model_.mesh->rest_positions[n]) + displacements_[n];
+    }
+    broken.position = ToVec3(0.5 * middle);
+    breaks.push_back(broken);
+  }
 }
 
 void Stepper::Flow() {

@@ -66,9 +66,10 @@ class Stepper {
   absl::Status SolveStep(double start, double end, const StopFlag& stop, State& state,
                          StepReport& report);
   // Alternates breaking and solving until no edge fails. Adds the elastic energy lost to
-  // breaking, and what re-solves gave away, J.
+  // breaking, and what re-solves gave away, J, and the edges that broke, but for their time.
   absl::Status Break(double dt, const StopFlag& stop, const State& state, double& fracture_energy,
-                     double& integration, StepReport& report);
+                     double& integration, std::vector<EdgeBreak>& breaks, StepReport& report);
+  void AddBreaks(std::vector<EdgeBreak>& breaks) const;
   // Finds the plastic strain after a step that ends at `displacements_`.
   void Flow();
   // J, of moving from `state` to `displacements_` in `dt` (s): where that ends, and half the
