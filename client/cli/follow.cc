@@ -21,6 +21,7 @@ FrameStreamOptions StreamOptions(const FollowOptions& options, ProgressDisplay& 
   stream.first_frame = options.first_frame;
   stream.stop_frame = options.stop_frame;
   stream.follow = options.stay;
+  stream.events = options.events != nullptr;
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last())
       stream.resume = FramePosition{last->epoch, last->frame, last->state_hash};
@@ -107,6 +108,7 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
       break;
     }
     const FrameHeader& header = (*frame)->header;
+    if (options.events != nullptr) CLEAVE_RETURN_IF_ERROR(options.events->Append((*frame)->events));
     if (options.recorder != nullptr)
       CLEAVE_RETURN_IF_ERROR(options.recorder->Append((*frame)->bytes));
     TakeOver(MakeIndexRow(header, 0, 0), result);

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "cleave/v1/frame.pb.h"
+#include "client/cli/event_file.h"
 #include "client/cli/interrupt.h"
 #include "client/cpp/client.h"
 #include "client/io/record/recorder.h"
@@ -25,6 +26,7 @@ struct FollowOptions {
   bool json = false;             // a JSON line a frame on stdout instead of progress on stderr
   bool quiet = false;
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
+  EventFile* events = nullptr;   // takes what breaks; may be null
 };
 
 struct FollowResult {

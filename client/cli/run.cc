@@ -108,6 +108,9 @@ class Run {
   absl::StatusOr<FollowResult> RecordFrames() {
     CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<Recorder> recorder,
                             Recorder::Open(folder_.frames()));
+    const auto last = recorder->last();
+    CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<EventFile> events,
+                            EventFile::Open(folder_.events(), last.has_value() ? last->frame : -1));
     FollowOptions follow;
     follow.session = session_.name();
     follow.goal_frame = session_.goal_frame();
@@ -116,6 +119,7 @@ class Run {
     follow.json = options_.json;
     follow.quiet = options_.quiet;
     follow.recorder = recorder.get();
+    follow.events = events.get();
     auto result = Follow(client(), program_.interrupt, follow);
     const absl::Status finished = recorder->Finish();
     if (!result.ok() && access_.embedded != nullptr)
@@ -175,7 +179,8 @@ class Run {
   }
 
   void PrintFiles(const std::vector<std::string>& products) const {
-    for (const std::string& path : {folder_.frames(), folder_.mesh(), folder_.reports()})
+    for (const std::string& path :
+         {folder_.frames(), folder_.mesh(), folder_.events(), folder_.reports()})
       if (std::filesystem::exists(path)) PrintResult(path);
     for (const std::string& path : products) PrintResult(path);
   }
@@ -219,7 +224,8 @@ void AddRun(CLI::App& app, Program& program) {
   verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
   verb->footer(
       "Leaves in DIR: frames.clv (the recorded frames), mesh.pb (the mesh, for `cleave export`\n"
-      "and `cleave preview`), reports.jsonl (a line of numbers a frame; private server only).\n"
+      "and `cleave preview`), events.jsonl (a line an event: edge breaks, splits, separations),\n"
+      "reports.jsonl (a line of numbers a frame; private server only).\n"
       "Their paths are printed on stdout, one a line. Ctrl-C pauses after the frame in work,\n"
       "twice gives that frame up; the same command goes on.\n\n"
       "Examples:\n"

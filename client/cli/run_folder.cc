@@ -54,7 +54,8 @@ absl::Status RunFolder::WriteMesh(const TetMesh& body) const {
 }
 
 absl::Status RunFolder::Clear() const {
-  for (const std::string& item : {session(), scene(), frames(), mesh(), reports(), server_data()}) {
+  for (const std::string& item :
+       {session(), scene(), frames(), mesh(), reports(), events(), server_data()}) {
     std::error_code error;
     std::filesystem::remove_all(item, error);
     if (error) return absl::InternalError(absl::StrCat(item, ": ", error.message()));

@@ -21,6 +21,7 @@ class RunFolder {
   std::string frames() const { return path_ + "/frames.clv"; }      // the recording
   std::string mesh() const { return path_ + "/mesh.pb"; }           // in metres, for exporters
   std::string reports() const { return path_ + "/reports.jsonl"; }  // a line a frame
+  std::string events() const { return path_ + "/events.jsonl"; }    // a line an event
   std::string scene() const { return path_ + "/scene.textproto"; }  // as it was sent
   std::string session() const { return path_ + "/session"; }        // the session's name
   std::string server_data() const { return path_ + "/server"; }     // of an embedded server

@@ -31,10 +31,15 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
                     FollowOptions follow, const v1::Scene& scene) {
   const RunFolder folder(options.out);
   std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<EventFile> events;
   if (!options.out.empty()) {
     CLEAVE_RETURN_IF_ERROR(folder.Make());
     CLEAVE_ASSIGN_OR_RETURN(recorder, Recorder::Open(folder.frames()));
+    const auto last = recorder->last();
+    CLEAVE_ASSIGN_OR_RETURN(events,
+                            EventFile::Open(folder.events(), last.has_value() ? last->frame : -1));
     follow.recorder = recorder.get();
+    follow.events = events.get();
   }
   const auto result = Follow(client, interrupt, follow);
   if (recorder != nullptr) CLEAVE_RETURN_IF_ERROR(recorder->Finish());
@@ -49,6 +54,7 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
     if (!options.json) {
       PrintResult(folder.frames());
       PrintResult(folder.mesh());
+      PrintResult(folder.events());
     }
   }
   if (result->interrupted && result->end.reason() == v1::END_REASON_UNSPECIFIED)
@@ -87,8 +93,9 @@ void AddWatch(CLI::App& app, Program& program) {
       ->required()
       ->type_name("SESSION");
   AddServerOptions(*verb, options->server, true);
-  verb->add_option("--out", options->out,
-                   "Folder for the recording: frames.clv, mesh.pb and scene.textproto")
+  verb->add_option(
+          "--out", options->out,
+          "Folder for the recording: frames.clv, mesh.pb, events.jsonl and scene.textproto")
       ->type_name("DIR");
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
       ->check(CLI::Range(int64_t{0}, int64_t{1} << 40))

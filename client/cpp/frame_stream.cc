@@ -54,6 +54,7 @@ absl::Status FrameStream::Connect() {
   request.set_session(options_.session);
   request.set_first_frame(options_.first_frame);
   request.set_follow(options_.follow);
+  request.set_events(options_.events);
   if (options_.stop_frame.has_value()) request.set_stop_frame(*options_.stop_frame);
   if (position_.has_value()) {
     request.set_first_frame(position_->frame + 1);
@@ -69,6 +70,7 @@ absl::Status FrameStream::Connect() {
   reader_ = client_.frames().StreamFrames(context_.get(), request);
   assembly_.clear();
   assembly_bytes_ = 0;
+  events_.Clear();
   v1::StreamFramesResponse response;
   if (!reader_->Read(&response)) {
     const grpc::Status status = reader_->Finish();
@@ -167,6 +169,9 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
         return absl::UnavailableError("the server shuts down");
       end_ = response.end();
       return std::nullopt;
+    } else if (response.has_events()) {
+      // More of the same frame's; frame numbers of both agree, or Accept finds them to differ.
+      events_.MergeFrom(response.events());
     } else if (response.has_chunk()) {
       bool whole = false;
       CLEAVE_RETURN_IF_ERROR(AddChunk(response.chunk(), whole));
@@ -191,6 +196,8 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
 // frame, and frames of one epoch have the same bytes whenever they are sent.
 absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string bytes) {
   StreamedFrame frame;
+  v1::FrameEvents events;
+  events.Swap(&events_);
   {
     const absl::StatusOr<FrameParts> parts = SplitFrame(bytes);
     if (!parts.ok()) return parts.status();
@@ -209,7 +216,11 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string byt
   if (header.kind != FrameKind::kKey && !continues)
     return absl::DataLossError(absl::StrCat("frame ", header.frame, " builds on frame ",
                                             header.base_frame, ", which was not sent"));
+  if (events.frame() != 0 && events.frame() != header.frame)
+    return absl::DataLossError(
+        absl::StrCat("events of frame ", events.frame(), " came before frame ", header.frame));
   if (decoder_.has_value()) CLEAVE_RETURN_IF_ERROR(decoder_->Apply(bytes));
+  frame.events = std::move(events);
   position_ = FramePosition{header.epoch, header.frame, header.state_hash};
   head_frame_ = std::max(head_frame_, header.frame);
   frame.bytes = std::move(bytes);

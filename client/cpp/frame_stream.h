@@ -38,6 +38,7 @@ struct FrameStreamOptions {
   int64_t first_frame = 0;
   std::optional<int64_t> stop_frame;  // last frame wanted; absent: until the run's goal
   bool follow = false;                // stay when the goal is reached, until Cancel
+  bool events = false;                // also what broke: StreamedFrame::events
   // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder(). With them
   // its edges (Incidence::edges).
   std::optional<std::vector<Vec3>> rest_positions;
@@ -49,7 +50,8 @@ struct FrameStreamOptions {
 // One committed frame as it is in the session's log.
 struct StreamedFrame {
   FrameHeader header;
-  std::string bytes;  // exactly one frame (core/stream/FORMAT.md), checksums checked
+  std::string bytes;       // exactly one frame (core/stream/FORMAT.md), checksums checked
+  v1::FrameEvents events;  // what broke in it; empty where nothing did or nobody asked
 };
 
 // The frames of a session in order, each once, across cuts of the connection and restarts of the
@@ -111,6 +113,7 @@ class FrameStream {
   std::string assembly_;
   uint64_t assembly_bytes_ = 0;  // wanted; 0: between frames
   int64_t assembly_frame_ = 0;
+  v1::FrameEvents events_;  // of the frame to come
 
   std::mutex mutex_;  // guards context_'s exchange against Cancel
   bool cancelled_ = false;

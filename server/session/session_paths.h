@@ -14,6 +14,7 @@ struct SessionPaths {
   std::string frames() const { return root + "/frames"; }
   std::string checkpoints() const { return root + "/checkpoints"; }
   std::string reports() const { return root + "/reports.jsonl"; }
+  std::string events() const { return root + "/events"; }
   std::string owner() const { return root + "/owner"; }
 };
 

@@ -7,6 +7,7 @@
 #include "core/mesh/incidence.h"
 #include "core/stream/frame_decoder.h"
 #include "core/stream/stream_header.h"
+#include "server/worker/event_message.h"
 
 namespace cleave {
 
@@ -14,8 +15,9 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
     const SessionPaths& paths, SessionInputs inputs, int threads) {
   CLEAVE_ASSIGN_OR_RETURN(FrameLogWriter log, FrameLogWriter::Open(paths.frames()));
   CLEAVE_ASSIGN_OR_RETURN(Reports reports, Reports::Open(paths.reports(), log.head()));
-  std::unique_ptr<RecordedSimulation> recorded(
-      new RecordedSimulation(Checkpoints(paths.checkpoints()), std::move(log), std::move(reports)));
+  CLEAVE_ASSIGN_OR_RETURN(EventLogWriter events, EventLogWriter::Open(paths.events(), log.head()));
+  std::unique_ptr<RecordedSimulation> recorded(new RecordedSimulation(
+      Checkpoints(paths.checkpoints()), std::move(log), std::move(reports), std::move(events)));
   const Scene& scene = inputs.scene;
   StreamParameters parameters;
   parameters.mesh_sha256 = inputs.mesh_sha256;
@@ -103,6 +105,10 @@ absl::Status RecordedSimulation::CatchUp(const StopFlag& stop) {
   if (frame() > reports_.last_frame()) {
     CLEAVE_RETURN_IF_ERROR(reports_.Append(frame(), ReportLine(report)));
   }
+  // Only a session of a build without events has committed frames that lack theirs.
+  if (frame() > events_.last_frame() && !report.events.empty()) {
+    CLEAVE_RETURN_IF_ERROR(events_.Append(EventMessage(report)));
+  }
   return absl::OkStatus();
 }
 
@@ -112,8 +118,9 @@ absl::StatusOr<FrameReport> RecordedSimulation::Advance(const StopFlag& stop) {
 
 absl::Status RecordedSimulation::Commit(const FrameReport& report) {
   CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
-  // The report first: opening cuts reports that lead the log, and never misses one.
+  // Report and events first: opening cuts those that lead the log, and never misses one.
   CLEAVE_RETURN_IF_ERROR(reports_.Append(report.frame, ReportLine(report)));
+  if (!report.events.empty()) CLEAVE_RETURN_IF_ERROR(events_.Append(EventMessage(report)));
   CLEAVE_RETURN_IF_ERROR(log_.Append(encoder_->header_bytes(), encoded));
   return head() % checkpoint_interval_ == 0 ? Checkpoint() : absl::OkStatus();
 }

@@ -16,6 +16,7 @@
 #include "core/simulation/simulation.h"
 #include "core/stream/frame_encoder.h"
 #include "server/session/checkpoints.h"
+#include "server/session/event_log.h"
 #include "server/session/frame_log.h"
 #include "server/session/reports.h"
 #include "server/worker/session_inputs.h"
@@ -53,8 +54,12 @@ class RecordedSimulation {
   absl::Status Checkpoint();
 
  private:
-  RecordedSimulation(Checkpoints checkpoints, FrameLogWriter log, Reports reports)
-      : checkpoints_(std::move(checkpoints)), log_(std::move(log)), reports_(std::move(reports)) {}
+  RecordedSimulation(Checkpoints checkpoints, FrameLogWriter log, Reports reports,
+                     EventLogWriter events)
+      : checkpoints_(std::move(checkpoints)),
+        log_(std::move(log)),
+        reports_(std::move(reports)),
+        events_(std::move(events)) {}
 
   absl::Status RestoreNewestCheckpoint();
   absl::Status RestoreEncoder();
@@ -64,6 +69,7 @@ class RecordedSimulation {
   Checkpoints checkpoints_;
   FrameLogWriter log_;
   Reports reports_;
+  EventLogWriter events_;
   std::vector<Vec3> rest_positions_;
   std::vector<std::array<int32_t, 2>> edges_;  // of the mesh, as frames number them
   StreamHeader header_;

@@ -290,12 +290,36 @@ class Impurities(CliTest):
 
 
 class EmbeddedRuns(CliTest):
+    def test_run_tells_what_broke(self):
+        text = (BLOCK % 3).replace('"density"', '"tensile_strength": 1e-3, "density"')
+        out = self.folder / "out"
+        code, _, errors = cleave("run", self.scene(text), "--out", out, "-q", "--frames", "2")
+        self.assertEqual(code, 0, errors)
+        first = (out / "events.jsonl").read_text()
+        events = [json.loads(line) for line in first.splitlines()]
+        reports = [json.loads(line) for line in (out / "reports.jsonl").read_text().splitlines()]
+        broken = [event for event in events if event["event"] == "edge_break"]
+        self.assertEqual(len(broken), reports[-1]["broken_edges"])
+        self.assertGreater(len(broken), 0)
+        off = [event for event in events if event["event"] == "separation"]
+        self.assertEqual(len(off) + 1, reports[-1]["fragments"])
+        self.assertEqual([event["piece"] for event in off], list(range(1, len(off) + 1)))
+        # What leads the recording is cut, and going on adds what follows.
+        with open(out / "events.jsonl", "a") as lines:
+            lines.write('{"frame":3,"event":"edge_break"}\n{"frame":3,')
+        code, _, errors = cleave("run", self.scene(text), "--out", out, "-q")
+        self.assertEqual(code, 0, errors)
+        lines = (out / "events.jsonl").read_text()
+        self.assertTrue(lines.startswith(first))
+        self.assertNotIn('{"frame":3,"event":"edge_break"}\n', lines)
+
     def test_run_leaves_a_recording_that_exports(self):
         out = self.folder / "out"
         code, output, errors = cleave("run", self.scene(BLOCK % 4), "--out", out, "--plot")
         self.assertEqual(code, 0, errors)
         self.assertEqual(output.split(), [f"{out}/{name}" for name in
-                                          ("frames.clv", "mesh.pb", "reports.jsonl", "plot.svg")])
+                                          ("frames.clv", "mesh.pb", "events.jsonl", "reports.jsonl",
+                                           "plot.svg")])
         self.assertIn("frame 4 of 4", errors)
         self.assertEqual(len((out / "reports.jsonl").read_text().splitlines()), 4)
         code, output, errors = cleave("export", out)

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,13 +36,20 @@ pid_t WorkerOf(const TestServer& server, const std::string& id) {
   return std::stoi(ReadBytes(server.session_directory(id) + "/owner"));
 }
 
-// Takes frames from the stream up to the given one, and compares each.
-void Take(FrameStream& stream, int64_t last, std::vector<std::string>& frames) {
+// Takes frames from the stream up to the given one. `told` has the edges that the stream has told
+// of, where it was asked for events.
+void Take(FrameStream& stream, int64_t last, std::vector<std::string>& frames,
+          std::set<int32_t>* told = nullptr) {
   while (static_cast<int64_t>(frames.size()) <= last) {
     absl::StatusOr<std::optional<StreamedFrame>> frame = stream.Next();
     ASSERT_TRUE(frame.ok()) << frame.status();
     ASSERT_TRUE(frame->has_value());
     ASSERT_EQ((*frame)->header.frame, static_cast<int64_t>(frames.size()));
+    if (told != nullptr) {
+      for (const v1::EdgeBreak& broken : (*frame)->events.edge_breaks())
+        ASSERT_TRUE(told->insert(broken.edge()).second) << "edge " << broken.edge() << " again";
+      ASSERT_EQ(told->size(), (*frame)->header.broken_edges);
+    }
     frames.push_back(std::move((*frame)->bytes));
   }
 }
@@ -54,7 +62,7 @@ TEST(CrashTest, TheRunThatIsComparedWithBreaksTheBar) {
   EXPECT_GT(last->fragments, 1);
 }
 
-TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndRepeatsNone) {
+TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndNoEventAndRepeatsNone) {
   const std::vector<std::string>& expected = UndisturbedFrames();
   TestServer server;
   const std::unique_ptr<Client> client = server.Connect();
@@ -62,18 +70,21 @@ TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndRepeatsNone) {
   ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
   FrameStreamOptions options;
   options.session = "sessions/bar";
+  options.events = true;
   FrameStream stream(*client, options);
   std::vector<std::string> frames;
+  std::set<int32_t> told;
   for (const int64_t frame : {12, 27}) {
-    Take(stream, frame, frames);
+    Take(stream, frame, frames, &told);
     if (HasFatalFailure()) return;
     ASSERT_EQ(kill(WorkerOf(server, "bar"), SIGKILL), 0);
     ASSERT_LT(client->GetSession("sessions/bar")->head_frame(), kFrames);
   }
-  Take(stream, kFrames, frames);
+  Take(stream, kFrames, frames, &told);
   if (HasFatalFailure()) return;
   EXPECT_FALSE((*stream.Next()).has_value());
   EXPECT_EQ(frames, expected);
+  EXPECT_GT(told.size(), 0u);
   EXPECT_THAT(server.log(), testing::HasSubstr("worker_ended session=bar how=\"signal 9\""));
 }
 
@@ -85,9 +96,11 @@ TEST(CrashTest, AGatewayKilledMidStreamGoesOnWhereItWasWhenItIsBack) {
   ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
   FrameStreamOptions options;
   options.session = "sessions/bar";
+  options.events = true;
   FrameStream stream(*client, options);
   std::vector<std::string> frames;
-  Take(stream, 15, frames);
+  std::set<int32_t> told;
+  Take(stream, 15, frames, &told);
   if (HasFatalFailure()) return;
   server.Kill();
   // A line a frame: the run was not over yet, or this test would show nothing.
@@ -95,7 +108,7 @@ TEST(CrashTest, AGatewayKilledMidStreamGoesOnWhereItWasWhenItIsBack) {
   ASSERT_LT(std::count(reports.begin(), reports.end(), '\n'), kFrames);
   server.Start();
   // The same stream: the client goes on behind the last frame that it has.
-  Take(stream, kFrames, frames);
+  Take(stream, kFrames, frames, &told);
   if (HasFatalFailure()) return;
   EXPECT_FALSE((*stream.Next()).has_value());
   EXPECT_EQ(frames, expected);

@@ -23,6 +23,7 @@ import grpc  # noqa: E402
 import numpy as np  # noqa: E402
 
 from cleave.client import CleaveError, Client  # noqa: E402
+from cleave.events import read_events  # noqa: E402
 from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
 
 
@@ -75,6 +76,51 @@ class PythonClientTest(unittest.TestCase):
         again = self.client.session("two-tets")
         self.assertEqual([frame.number for frame in again.frames(3, 4)], [3, 4])
         np.testing.assert_array_equal(list(again.frames(5))[0].positions, frames[-1].positions)
+
+    def test_frames_tell_what_broke(self):
+        session = self.client.create_session("told", first_steps.bar())
+        self.addCleanup(session.delete)
+        session.run()
+        mesh = session.mesh()
+        edges = mesh.edges()
+        told = {}
+        pieces = 1
+        for frame in session.frames(mesh=mesh, events=True):
+            told.update(zip(frame.events.edges.tolist(), frame.events.energies))
+            self.assertEqual(sorted(told), frame.broken_edges.tolist())
+            np.testing.assert_array_equal(edges[frame.events.edges], frame.events.nodes)
+            np.testing.assert_allclose(
+                mesh.positions[frame.events.nodes].mean(axis=1), frame.events.rest, atol=1e-12)
+            for split in frame.events.splits:
+                for separation in split.separations:
+                    self.assertEqual(separation.part.piece, pieces)
+                    self.assertLessEqual(separation.part.volume, split.kept.volume)
+                    pieces += 1
+            self.assertEqual(pieces, frame.fragments)
+        self.assertGreater(len(told), 0)
+        # From the middle, and without asking.
+        late = next(frame for frame in session.frames(20, events=True))
+        self.assertEqual(late.number, 20)
+        self.assertIsNone(next(iter(session.frames(20))).events)
+
+    def test_events_of_a_run_folder_are_read(self):
+        place = '"rest":[1,2,3],"position":[1.5,2,3],"energy":0.25}'
+        part = '"volume":0.5,"node_count":4,"first_node":%d,'
+        folder = pathlib.Path(self._folder.name) / "run"
+        folder.mkdir()
+        (folder / "events.jsonl").write_text(
+            '{"frame":4,"event":"edge_break","time":0.5,"edge":17,"nodes":[3,8],"pieces":[0,1],'
+            + place + '\n{"frame":4,"event":"split","time":0.5,"piece":0,' + part % 0
+            + '"separated":[1],' + place + '\n{"frame":4,"event":"separation","time":0.5,"piece":1,'
+            + '"from":0,' + part % 8 + place + "\n")
+        events = read_events(folder)
+        self.assertEqual(list(events), [4])
+        np.testing.assert_array_equal(events[4].nodes, [[3, 8]])
+        np.testing.assert_array_equal(events[4].positions, [[1.5, 2, 3]])
+        (split,) = events[4].splits
+        self.assertEqual(split.separations[0].part.first_node, 8)
+        self.assertEqual(split.separations[0].part.piece, 1)
+        self.assertEqual(split.place.energy, 0.25)
 
     def test_session_is_stepped(self):
         session = self.client.create_session("stepped", first_steps.bar())

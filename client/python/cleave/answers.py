@@ -16,6 +16,7 @@ class Frame:
     fragments: int
     positions: np.ndarray  # nodes x 3 float64, m
     broken_edges: np.ndarray  # ascending int32
+    events: object = None  # Events (events.py) where they were asked for
 
 
 @dataclasses.dataclass(frozen=True)

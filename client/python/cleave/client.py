@@ -22,6 +22,7 @@ from google.protobuf import json_format, text_format
 
 from cleave.answers import Curve, Frame, ImpurityPreview, Mesh, Probe
 from cleave.checksums import crc32c
+from cleave.events import Events
 from cleave.stream import FrameDecoder, split_frame
 
 try:
@@ -386,17 +387,19 @@ class Session:
         scale = mesh.unit_scale if mesh.HasField("unit_scale") else 1.0
         return self._client.download_mesh(mesh.asset, scale)
 
-    def frames(self, first_frame=0, stop_frame=None, mesh=None):
+    def frames(self, first_frame=0, stop_frame=None, mesh=None, events=False):
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
-        Goes on after cuts of the connection. `mesh` spares fetching it. Raises SimulationFailed
-        after the last frame of a run that failed.
+        Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
+        what broke in them. Raises SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()
         decoder = None
         attempt = 0
         while True:
-            request = frame_pb2.StreamFramesRequest(session=self.name, first_frame=first_frame)
+            request = frame_pb2.StreamFramesRequest(
+                session=self.name, first_frame=first_frame, events=events
+            )
             if stop_frame is not None:
                 request.stop_frame = stop_frame
             if decoder is not None and decoder.frame >= 0:
@@ -407,12 +410,15 @@ class Session:
             stream = self._client._frames.StreamFrames(request)
             try:
                 data = b""
+                broken = frame_pb2.FrameEvents()
                 for message in stream:
                     event = message.WhichOneof("event")
                     if event == "start" and decoder is None:
                         decoder = FrameDecoder(
                             message.start.header, mesh.positions, mesh.edges()
                         )
+                    elif event == "events":
+                        broken.MergeFrom(message.events)
                     elif event == "chunk":
                         data += message.chunk.payload
                         if len(data) < message.chunk.frame_bytes:
@@ -431,7 +437,9 @@ class Session:
                                 decoder.fragments,
                                 decoder.positions.copy(),
                                 decoder.broken_edges.copy(),
+                                Events.of_message(broken) if events else None,
                             )
+                        broken.Clear()
                     elif event == "end":
                         if message.end.reason == frame_pb2.END_REASON_FAILED:
                             raise SimulationFailed(f"{self.name}: {message.end.message}")

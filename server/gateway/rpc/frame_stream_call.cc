@@ -16,6 +16,7 @@ constexpr uint32_t kDefaultChunkBytes = 256 << 10;
 constexpr uint32_t kMinChunkBytes = 16 << 10;
 constexpr uint32_t kMaxChunkBytes = 1 << 20;
 constexpr std::chrono::seconds kHeartbeat{5};
+constexpr int kEventsPerMessage = 1000;  // below 200 KB
 
 }  // namespace
 
@@ -70,6 +71,7 @@ absl::Status FrameStreamCall::Begin() {
   CLEAVE_ASSIGN_OR_RETURN(std::shared_ptr<HostedSession> session,
                           sessions_.Find(request_.session()));
   session->AddViewer(1);
+  if (request_.events()) event_log_.emplace(session->paths().events());
   Attach(std::move(session));
   return absl::OkStatus();
 }
@@ -83,13 +85,15 @@ absl::Status FrameStreamCall::Continue(const HostedSession::State& state) {
     SendEnd(v1::END_REASON_DELETED, "");
   } else if (going_down()) {
     SendEnd(v1::END_REASON_SHUTDOWN, "the server goes down; go on where you are when it is back");
+  } else if (events_.edge_breaks_size() > 0 || events_.splits_size() > 0) {
+    SendEvents();
   } else if (!frame_bytes_.empty()) {
     SendChunk(state.head_frame);
   } else if (request_.has_stop_frame() && next_frame_ > request_.stop_frame()) {
     SendEnd(v1::END_REASON_STOP_FRAME, "");
   } else if (next_frame_ <= session()->frames().head()) {
     CLEAVE_RETURN_IF_ERROR(LoadNextFrame());
-    SendChunk(state.head_frame);
+    return Continue(state);
   } else if (state.state == v1::SESSION_STATE_FAILED && !state.active) {
     SendEnd(v1::END_REASON_FAILED, absl::StrCat(state.error.reason(), ": ", state.error.message()));
   } else if (!state.active && !request_.follow()) {
@@ -151,7 +155,26 @@ absl::Status FrameStreamCall::LoadNextFrame() {
   }
   CLEAVE_ASSIGN_OR_RETURN(frame_bytes_, session()->frames().ReadFrame(*row));
   frame_sent_ = 0;
+  if (!event_log_.has_value()) return absl::OkStatus();
+  CLEAVE_ASSIGN_OR_RETURN(std::optional<v1::FrameEvents> events, event_log_->Read(next_frame_));
+  if (events.has_value()) events_ = *std::move(events);
   return absl::OkStatus();
+}
+
+// Moves the first of what is left of the frame's events into the message.
+void FrameStreamCall::SendEvents() {
+  v1::FrameEvents& sent = *message_.mutable_events();
+  sent.Clear();
+  sent.set_frame(next_frame_);
+  const auto move_some = [](auto& from, auto& to, int room) {
+    const int count = std::min(room, from.size());
+    for (int i = 0; i < count; ++i) to.Add()->Swap(from.Mutable(i));
+    from.DeleteSubrange(0, count);
+  };
+  move_some(*events_.mutable_edge_breaks(), *sent.mutable_edge_breaks(), kEventsPerMessage);
+  if (events_.edge_breaks_size() == 0)
+    move_some(*events_.mutable_splits(), *sent.mutable_splits(), kEventsPerMessage);
+  Send();
 }
 
 void FrameStreamCall::SendChunk(int64_t head_frame) {

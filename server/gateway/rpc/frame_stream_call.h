@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -13,6 +14,7 @@
 #include "server/gateway/executor.h"
 #include "server/gateway/rpc/session_call.h"
 #include "server/gateway/session_store.h"
+#include "server/session/event_log.h"
 
 namespace cleave {
 
@@ -40,6 +42,7 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   // Sends the next piece of what is due.
   absl::Status Continue(const HostedSession::State& state);
   absl::Status LoadNextFrame();
+  void SendEvents();
   void SendChunk(int64_t head_frame);
   void SendEnd(v1::EndReason reason, const std::string& message);
   void Send();
@@ -53,8 +56,10 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   bool ended_ = false;     // StreamEnd was sent
   bool answered_ = false;  // Finish was called
   int64_t next_frame_ = 0;
-  std::string frame_bytes_;  // of next_frame_, while it is being sent
-  size_t frame_sent_ = 0;    // bytes of it
+  std::string frame_bytes_;                  // of next_frame_, while it is being sent
+  size_t frame_sent_ = 0;                    // bytes of it
+  std::optional<EventLogReader> event_log_;  // where events were asked for
+  v1::FrameEvents events_;                   // of next_frame_, yet to be sent
   Executor::Clock::time_point last_write_;
   std::atomic<bool> writing_ = false;
   std::atomic<bool> cancelled_ = false;
