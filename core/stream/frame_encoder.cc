@@ -49,7 +49,7 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
       return absl::FailedPreconditionError("the state to go on from is of another predictor");
     }
     const ResidualHistory& residuals = encoder.state_.residuals;
-    if (header.coder_id == kCoderContextRans && !residuals.fresh &&
+    if (header.coder_id == kCoderContextRans && encoder.state_.frame >= 0 &&
         residuals.activities.size() != rest_positions.size()) {
       return absl::FailedPreconditionError("the state to go on from is of another coder");
     }

@@ -11,6 +11,7 @@ namespace cleave {
 namespace {
 
 constexpr uint8_t kSomeHold = 1;
+constexpr uint8_t kHasClasses = 2;
 
 constexpr auto kListed = static_cast<uint8_t>(kNamedContinuations.size());
 
@@ -24,7 +25,8 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
                   std::string& body) {
   std::string raw;
   ByteWriter writer(raw);
-  writer.Put<uint8_t>(motion.held.empty() ? 0 : kSomeHold);
+  writer.Put<uint8_t>(static_cast<uint8_t>((motion.held.empty() ? 0 : kSomeHold) |
+                                           (motion.classes.empty() ? 0 : kHasClasses)));
   for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
     unsigned bits = 0;
     for (size_t bit = 0; bit < std::min<size_t>(8, motion.held.size() - piece); ++bit) {
@@ -53,8 +55,8 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   ++header.section_count;
 }
 
-absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section& section,
-                                       int64_t pieces, int64_t groups) {
+absl::StatusOr<FrameMotion> ReadMotion(bool key, bool rans, const Section& section, int64_t pieces,
+                                       int64_t groups) {
   if (section.type != SectionType::kMotion || section.coder != kCoderZstdPlanes ||
       section.prediction != Prediction::kNone || section.first != 0 || section.count != groups ||
       section.raw_bytes == 0 || section.raw_bytes > LargestMotion(pieces, groups)) {
@@ -65,8 +67,11 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section
   ByteReader reader(raw);
   FrameMotion motion;
   const auto flags = reader.Get<uint8_t>();
-  bool fits = flags == 0 || (flags == kSomeHold && !key);
-  if (flags == kSomeHold) {
+  const bool some_hold = (flags & kSomeHold) != 0;
+  const bool has_classes = (flags & kHasClasses) != 0;
+  bool fits = flags <= (kSomeHold | kHasClasses) && !(key && some_hold) &&
+              (has_classes ? rans : !(key && rans));
+  if (some_hold) {
     motion.held.resize(static_cast<size_t>(pieces));
     for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
       const unsigned bits = reader.Get<uint8_t>();
@@ -93,7 +98,7 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section
   if (has_classes) {
     for (int64_t group = 0; group < groups; ++group) {
       motion.classes.push_back(reader.Get<uint8_t>());
-      fits &= motion.classes.back() < kClasses;
+      fits &= motion.classes.back() < kClasses || (motion.classes.back() == kGoesOn && !key);
     }
   }
   CLEAVE_RETURN_IF_ERROR(reader.Finish("motion section"));
@@ -101,20 +106,17 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section
   return motion;
 }
 
-void BeginResiduals(const NodeOrder& order, const FrameMotion& motion,
+void BeginResiduals(bool key, const NodeOrder& order, const FrameMotion& motion,
                     const ResidualHistory& history, ResidualHistory& next) {
-  if (motion.classes.empty()) {
-    next.activities = history.activities;
-    next.counts = history.counts;
-  } else {
-    next.activities.resize(order.nodes.size());
-    for (size_t group = 0; group < motion.classes.size(); ++group) {
-      std::fill(next.activities.begin() + order.group_begins[group],
-                next.activities.begin() + order.group_begins[group + 1],
-                ActivityOf(motion.classes[group]));
-    }
-    next.counts = PriorCounts();
+  next.activities = history.activities;
+  next.activities.resize(order.nodes.size());
+  for (size_t group = 0; group < motion.classes.size(); ++group) {
+    if (motion.classes[group] == kGoesOn) continue;
+    std::fill(next.activities.begin() + order.group_begins[group],
+              next.activities.begin() + order.group_begins[group + 1],
+              ActivityOf(motion.classes[group]));
   }
+  next.counts = key ? PriorCounts() : history.counts;
   next.counts.Fade();
 }
 

@@ -13,11 +13,16 @@
 
 namespace cleave {
 
+// A group whose places go on from the activities that they have.
+inline constexpr uint8_t kGoesOn = 255;
+
 // What a frame says about its prediction, for predictor 2: FORMAT.md, "Motion".
 struct FrameMotion {
   std::vector<uint8_t> held;                // by piece: 1 if it stays where it is; empty: none does
   std::vector<Continuation> continuations;  // by group; not in a key frame
-  std::vector<uint8_t> classes;  // by group, where the frame is fresh for coder 2; else empty
+  // With coder 2, by group: the class with which all its places begin, or kGoesOn; empty: all go
+  // on. In a key frame each group has a class.
+  std::vector<uint8_t> classes;
 
   bool Holds(int32_t piece) const { return !held.empty() && held[static_cast<size_t>(piece)] != 0; }
 };
@@ -26,13 +31,15 @@ struct FrameMotion {
 void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHeader& header,
                   std::string& body);
 
-// Reads one for a frame of this many pieces and groups, with or without classes. Errors: DataLoss.
-absl::StatusOr<FrameMotion> ReadMotion(bool key, bool has_classes, const Section& section,
-                                       int64_t pieces, int64_t groups);
+// Reads one for a frame of this many pieces and groups, of coder 2 (`rans`) or not. Errors:
+// DataLoss.
+absl::StatusOr<FrameMotion> ReadMotion(bool key, bool rans, const Section& section, int64_t pieces,
+                                       int64_t groups);
 
-// What coder 2 begins a frame with: the history of the frame before, or, where the motion has
-// classes, theirs and the prior counts. The counts are faded already; the frame's own come on top.
-void BeginResiduals(const NodeOrder& order, const FrameMotion& motion,
+// What coder 2 begins a frame with: the history of the frame before, or the prior counts in a key
+// frame; but the motion's classes, where it has any. The counts are faded already; the frame's own
+// come on top.
+void BeginResiduals(bool key, const NodeOrder& order, const FrameMotion& motion,
                     const ResidualHistory& history, ResidualHistory& next);
 
 }  // namespace cleave

@@ -55,17 +55,15 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
   predictor_.Prepare(frame.tolerance, next.broken_edges, state.positions, state.previous, false);
   const Pieces& pieces = predictor_.pieces();
   const bool rans = header_.coder_id == kCoderContextRans;
-  const bool fresh = key || state.residuals.fresh;
   CLEAVE_ASSIGN_OR_RETURN(
       const FrameMotion motion,
-      ReadMotion(key, rans && fresh, sections[0], pieces.count(), predictor_.order().groups()));
+      ReadMotion(key, rans, sections[0], pieces.count(), predictor_.order().groups()));
 
   std::optional<ResidualCoder> coder;
   if (rans) {
-    coder.emplace(state.residuals, fresh, ResidualCoder::Direction::kDecode);
-    BeginResiduals(predictor_.order(), motion, state.residuals, next.residuals);
+    coder.emplace(state.residuals, key, ResidualCoder::Direction::kDecode);
+    BeginResiduals(key, predictor_.order(), motion, state.residuals, next.residuals);
   }
-  next.residuals.fresh = key;
   std::vector<SymbolCounts> counts(rans ? chunks : 0);
   std::vector<absl::Status> statuses(chunks);
   ParallelFor(static_cast<int64_t>(chunks), 1, [&](int64_t from, int64_t to) {

@@ -137,40 +137,20 @@ void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeade
     return prediction + kUnitsPerStep * steps;
   };
   predictor_.Run(key, state.positions, state.previous, next, choose, holds, correct);
-  const bool fresh = key || state.residuals.fresh;
   motion_.classes.clear();
-  if (fresh && header_.coder_id == kCoderContextRans) ChooseClasses();
-  AppendMotion(key, motion_, predictor_.order().groups(), header, body);
-  AppendPositions(fresh, state.residuals, header, body, next_history);
-  next_history.fresh = key;
-}
-
-void InterpolationEncoder::ChooseClasses() {
-  const NodeOrder& order = predictor_.order();
-  for (size_t group = 0; group + 1 < order.group_begins.size(); ++group) {
-    uint64_t sum = 0;
-    uint64_t moving = 1;
-    for (int32_t place = order.group_begins[group]; place < order.group_begins[group + 1];
-         ++place) {
-      if (motion_.Holds(predictor_.pieces()[place])) continue;
-      ++moving;
-      const Int32x4 r = residuals_[static_cast<size_t>(place)];
-      for (int axis = 0; axis < 3; ++axis) sum += static_cast<uint64_t>(std::abs(r[axis]));
-    }
-    motion_.classes.push_back(
-        ClassOf(static_cast<uint32_t>(std::min<uint64_t>(16 * sum / moving, 65535))));
-  }
-}
-
-void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& history,
-                                           FrameHeader& header, std::string& body,
-                                           ResidualHistory& next) {
-  const bool rans = header_.coder_id == kCoderContextRans;
   std::optional<ResidualCoder> coder;
-  if (rans) {
-    coder.emplace(history, fresh, ResidualCoder::Direction::kEncode);
-    BeginResiduals(predictor_.order(), motion_, history, next);
+  if (header_.coder_id == kCoderContextRans) {
+    coder.emplace(state.residuals, key, ResidualCoder::Direction::kEncode);
+    motion_.classes = class_choice_.Choose(key, predictor_.order(), predictor_.pieces(), motion_,
+                                           residuals_, state.residuals.activities, *coder);
+    BeginResiduals(key, predictor_.order(), motion_, state.residuals, next_history);
   }
+  AppendMotion(key, motion_, predictor_.order().groups(), header, body);
+  AppendPositions(coder.has_value() ? &*coder : nullptr, header, body, next_history);
+}
+
+void InterpolationEncoder::AppendPositions(const ResidualCoder* coder, FrameHeader& header,
+                                           std::string& body, ResidualHistory& next) {
   const auto nodes = static_cast<int64_t>(header_.node_count);
   const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
   const int64_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
@@ -192,7 +172,7 @@ void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& hi
         }
         moving = chunk.moving;
       }
-      if (!rans) {
+      if (coder == nullptr) {
         std::vector<int32_t> values;
         values.reserve(3 * moving.size());
         for (const int32_t place : moving) {
@@ -224,7 +204,7 @@ void InterpolationEncoder::AppendPositions(bool fresh, const ResidualHistory& hi
                    .coded = chunk.coded},
                   body);
     ++header.section_count;
-    if (rans) next.counts.Add(chunk.counts);
+    if (coder != nullptr) next.counts.Add(chunk.counts);
   }
 }
 

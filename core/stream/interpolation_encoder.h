@@ -9,11 +9,13 @@
 #include "absl/status/status.h"
 #include "core/base/int4.h"
 #include "core/base/vec3.h"
+#include "core/stream/class_choice.h"
 #include "core/stream/continuation_fit.h"
 #include "core/stream/frame_header.h"
 #include "core/stream/frame_motion.h"
 #include "core/stream/interpolation_predictor.h"
 #include "core/stream/rans.h"
+#include "core/stream/residual_coder.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_state.h"
 
@@ -60,9 +62,8 @@ class InterpolationEncoder {
   bool Stays(const StreamState& state, size_t place) const;
   void ChooseHolds(const StreamState& state);
   Continuation Choose(int64_t group);
-  void ChooseClasses();
-  void AppendPositions(bool fresh, const ResidualHistory& history, FrameHeader& header,
-                       std::string& body, ResidualHistory& next);
+  void AppendPositions(const ResidualCoder* coder, FrameHeader& header, std::string& body,
+                       ResidualHistory& next);
 
   StreamHeader header_;
   InterpolationPredictor predictor_;
@@ -74,6 +75,7 @@ class InterpolationEncoder {
   std::vector<DetailSample> samples_;
   std::vector<Chunk> chunks_;
   FrameMotion motion_;
+  ClassChoice class_choice_;
 };
 
 }  // namespace cleave

@@ -34,9 +34,9 @@ void FillAlphabet(const std::array<uint64_t, kSymbols>& counts, Alphabet& alphab
 
 }  // namespace
 
-ResidualCoder::ResidualCoder(const ResidualHistory& history, bool fresh, Direction direction) {
-  const SymbolCounts prior = fresh ? PriorCounts() : SymbolCounts();
-  const SymbolCounts& counts = fresh ? prior : history.counts;
+ResidualCoder::ResidualCoder(const ResidualHistory& history, bool key, Direction direction) {
+  const SymbolCounts prior = key ? PriorCounts() : SymbolCounts();
+  const SymbolCounts& counts = key ? prior : history.counts;
   if (direction == Direction::kDecode) {
     to_decode_ = std::make_unique<ToDecode>();
     for (size_t c = 0; c < kClasses; ++c) {

@@ -21,9 +21,9 @@ namespace cleave {
 // the next frame's.
 class ResidualCoder {
  public:
-  // For a frame that follows `history`; if it is fresh, frequencies are the prior's.
+  // For a frame that follows `history`; in a key frame, `key`, frequencies are the prior's.
   enum class Direction { kEncode, kDecode };
-  ResidualCoder(const ResidualHistory& history, bool fresh, Direction direction);
+  ResidualCoder(const ResidualHistory& history, bool key, Direction direction);
 
   // Codes what `places`, whose classes follow from `activities`, have in `residuals` (x, y, z of
   // each place and 0), counts it and makes their next activities. Nothing if all are zero. `writer`
@@ -36,6 +36,11 @@ class ResidualCoder {
   absl::Status Decode(absl::string_view coded, std::span<const int32_t> places,
                       std::span<Int32x4> residuals, std::span<uint16_t> activities,
                       SymbolCounts& counts) const;
+
+  // Of a mask, or of kMasks + a token, in a class, in 1/kFrequencyOne. To encode only.
+  size_t Frequency(size_t activity_class, size_t symbol) const {
+    return kFrequencyOne - to_encode_[activity_class * (kMasks + kTokens) + symbol].complement;
+  }
 
   // What a chunk without any residual adds: nothing is coded for it.
   static void SkipZeros(std::span<const int32_t> places, std::span<uint16_t> activities,

@@ -51,7 +51,6 @@ SymbolCounts PriorCounts();
 struct ResidualHistory {
   std::vector<uint16_t> activities;  // by place: decaying mean of |x| + |y| + |z|, in sixteenths
   SymbolCounts counts;
-  bool fresh = true;  // no delta since the key frame: classes are by group, counts are the prior
 };
 
 // The least activity of each class but the first.

@@ -7,7 +7,7 @@ import struct
 
 import numpy as np
 
-from cleave.residuals import CLASSES
+from cleave.residuals import CLASSES, GOES_ON
 
 MAX_QUANTISED = 2**30 - 1
 UNITS_PER_STEP = 64
@@ -260,18 +260,18 @@ def _weights(there, offsets, squares):
 
 class Motion:
     """Section 6.4. holds: whether each piece does; continuations: (a, b, c) of each group;
-    classes: of each group for coder 2, or None."""
+    classes: of each group, with coder 2, or None."""
 
     _NAMED = ((64, 0, 0), (128, -64, 0), (96, -32, 0), (0, 0, 64))
 
-    def __init__(self, raw, key, has_classes, pieces, groups):
+    def __init__(self, raw, key, rans, pieces, groups):
         """Raises ValueError for bytes that are not a motion."""
         self.holds = np.zeros(pieces, bool)
         self.continuations = [self._NAMED[3]] * groups
         at = 1
-        if not raw or raw[0] > (0 if key else 1):
+        if not raw or raw[0] > 3 or (key and raw[0] & 1):
             raise ValueError("motion section has values out of range")
-        if raw[0] == 1:
+        if raw[0] & 1:
             size = (pieces + 7) // 8
             if len(raw) < at + size:
                 raise ValueError("motion section is truncated")
@@ -296,9 +296,13 @@ class Motion:
                 self.continuations.append(listed)
                 at += 6
         self.classes = None
+        has_classes = raw[0] & 2 != 0
+        if has_classes != rans and (key or has_classes):
+            raise ValueError("motion section has values out of range")
         if has_classes:
             self.classes = np.frombuffer(raw[at : at + groups], "u1")
-            if len(self.classes) != groups or (self.classes >= CLASSES).any():
+            known = (self.classes < CLASSES) | (not key and self.classes == GOES_ON)
+            if len(self.classes) != groups or not known.all():
                 raise ValueError("motion section has values out of range")
             at += groups
         if at != len(raw):

@@ -5,6 +5,7 @@ import struct
 import numpy as np
 
 CLASSES = 16
+GOES_ON = 255  # a group's class: its places go on from their activities
 _MASKS, _TOKENS = 8, 58
 _THRESHOLDS = np.array([1, 2, 3, 4, 6, 9, 14, 20, 32, 48, 80, 128, 224, 448, 1024])
 _ACTIVITIES = np.array([0, 1, 2, 3, 5, 7, 11, 17, 25, 39, 62, 101, 170, 316, 680, 2400])
@@ -58,10 +59,9 @@ class ResidualHistory:
     def __init__(self, places):
         self.activities = np.zeros(places, "i8")
         self.masks, self.tokens = _PRIOR
-        self.fresh = True
 
     def begin(self, key, group_classes, groups):
-        """Starts a frame. group_classes: the motion's, in a fresh frame; groups: of each place."""
+        """Starts a frame. group_classes: the motion's, or None; groups: of each place."""
         return _FrameDecoder(self, key, group_classes, groups)
 
 
@@ -69,13 +69,12 @@ class _FrameDecoder:
     """Decodes the chunks of one frame."""
 
     def __init__(self, history, key, group_classes, groups):
-        if group_classes is None:
-            self._activities = history.activities.copy()
-            self._begin = (history.masks, history.tokens)
-        else:
-            self._activities = _ACTIVITIES[np.asarray(group_classes)][groups]
-            self._begin = _PRIOR
-        self._key = key
+        self._activities = history.activities.copy()
+        if group_classes is not None:
+            classes = np.asarray(group_classes, int)[groups]
+            begins = classes != GOES_ON
+            self._activities[begins] = _ACTIVITIES[classes[begins]]
+        self._begin = _PRIOR if key else (history.masks, history.tokens)
         self._added = (np.zeros((CLASSES, _MASKS), "i8"), np.zeros((CLASSES, _TOKENS), "i8"))
         self._slots = ({}, {})
 
@@ -100,7 +99,6 @@ class _FrameDecoder:
         after.masks, after.tokens = (
             begin * 3 // 4 + added for begin, added in zip(self._begin, self._added)
         )
-        after.fresh = self._key
         return after
 
     def _table(self, alphabet, index):

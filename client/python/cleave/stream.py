@@ -82,7 +82,7 @@ class FrameDecoder:
             self._predictor = Predictor(rest, edges)
             self._rest = rest[self._predictor.order.nodes]
             self._labels = PieceLabels(self._predictor)
-        self._history = ResidualHistory(0)
+        self._history = ResidualHistory(self.header.nodes)
         self._previous = None
         self._quantised = None
         self._tolerance = None
@@ -244,9 +244,9 @@ class FrameDecoder:
         ):
             raise DamagedError("motion section does not fit its frame")
         key = header.kind == KEY
-        has_classes = self.header.coder == 2 and (key or self._history.fresh)
+        rans = self.header.coder == 2
         try:
-            motion = Motion(decode_parts(motion, 1), key, has_classes, pieces, groups)
+            motion = Motion(decode_parts(motion, 1), key, rans, pieces, groups)
         except ValueError as error:
             raise DamagedError(str(error)) from error
         history = self._history

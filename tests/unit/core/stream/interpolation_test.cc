@@ -234,6 +234,48 @@ INSTANTIATE_TEST_SUITE_P(Coders, Interpolation,
                            return "Coder" + std::to_string(coder.param);
                          });
 
+// Most of it rests, a tenth of its nodes lie about: key frames, and the frame in which all of it
+// jumps, must not pay for what was before.
+TEST(InterpolationSize, ContextsFollowWhatChangesFromOneFrameToTheNext) {
+  const Body body = LatticeBody(20, 10, 6);
+  std::vector<int32_t> loose;  // edges of every tenth node
+  for (size_t edge = 0; edge < body.edges.size(); ++edge) {
+    if (body.edges[edge][0] % 10 == 0 || body.edges[edge][1] % 10 == 0) {
+      loose.push_back(static_cast<int32_t>(edge));
+    }
+  }
+  std::vector<size_t> sizes;  // of coders 1 and 2
+  for (const uint16_t coder : {kCoderZstdPlanes, kCoderContextRans}) {
+    StreamParameters parameters = Parameters(body.edges.size(), 1e-5, 12);
+    parameters.predictor_id = kPredictorInterpolation;
+    parameters.coder_id = coder;
+    FrameEncoder encoder = MakeEncoder(parameters, body.mesh());
+    FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+    size_t size = 0;
+    for (int64_t number = 0; number < 36; ++number) {
+      Frame frame;
+      frame.frame = number;
+      frame.positions = body.rest;
+      frame.broken_edges = loose;
+      for (size_t node = 0; node < body.rest.size(); ++node) {
+        Vec3& x = frame.positions[node];
+        if (node % 10 == 0) {
+          x[0] += 0.3 * Random(1, node, 0);
+          x[1] += 1e-5 * static_cast<double>(number);
+        } else if (number == 17) {
+          for (size_t axis = 0; axis < 3; ++axis) x[axis] += 1e-3 * Random(2, node, axis);
+        }
+      }
+      const auto encoded = encoder.Encode(frame);
+      ASSERT_TRUE(encoded.ok()) << encoded.status();
+      ASSERT_TRUE(decoder.Apply(encoded->bytes).ok());
+      size += encoded->bytes.size();
+    }
+    sizes.push_back(size);
+  }
+  EXPECT_LT(sizes[1], sizes[0] * 9 / 10);
+}
+
 TEST(InterpolationState, OneOfAnotherCoderIsRefused) {
   const Body body = LatticeBody(4, 3, 3);
   StreamParameters parameters = Parameters(body.edges.size(), 1e-4, 100);
