@@ -87,7 +87,10 @@ absl::Status Export(Program& program, const Options& options) {
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
                           SelectFrames(run.recording, options.first, options.last, options.stride));
   if (BakeFormats().count(options.format) > 0) return ExportBake(program, options, run, frames);
-  const ExportOptions target{TargetFolder(options), options.name};
+  ExportOptions target{TargetFolder(options), options.name};
+  if (options.format != "obj") {
+    CLEAVE_ASSIGN_OR_RETURN(target.node_potencies, RunPotencies(options.run, run.mesh));
+  }
   const Progress progress = ShowingProgress("exporting frames", program.interrupt);
   const auto result = options.format == "ply" ? WritePlySeries(run.mesh, frames, target, progress)
                       : options.format == "obj"

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/console.h"
@@ -26,6 +27,7 @@ struct Options {
   std::optional<int64_t> still;
   bool sheet = false;
   bool animation = false;
+  std::optional<std::string> turntable;
   int64_t stride = 1;
   PreviewOptions look;
   SheetOptions sheet_look;
@@ -41,6 +43,13 @@ class Pictures {
 
   absl::Status Draw() {
     CLEAVE_RETURN_IF_ERROR(ApplyRunLook(options_.run, run_.mesh, look_));
+    if (look_.color_by == ColorBy::kImpurity) {
+      CLEAVE_ASSIGN_OR_RETURN(look_.node_potencies, RunPotencies(options_.run, run_.mesh));
+      if (look_.node_potencies.empty()) {
+        return absl::FailedPreconditionError(absl::StrCat(
+            "--color impurity: there is no scene with impurities beside ", options_.run));
+      }
+    }
     look_.camera.azimuth = options_.azimuth;
     look_.camera.elevation = options_.elevation;
     folder_ = options_.to;
@@ -55,8 +64,10 @@ class Pictures {
     CLEAVE_ASSIGN_OR_RETURN(
         frames_,
         SelectFrames(run_.recording, 0, std::numeric_limits<int64_t>::max(), options_.stride));
-    const bool neither = !options_.still.has_value() && !options_.sheet && !options_.animation;
+    const bool neither = !options_.still.has_value() && !options_.sheet && !options_.animation &&
+                         !options_.turntable.has_value();
     if (options_.still.has_value()) CLEAVE_RETURN_IF_ERROR(DrawStill(*options_.still));
+    if (options_.turntable.has_value()) CLEAVE_RETURN_IF_ERROR(DrawTurntable(*options_.turntable));
     if (options_.sheet || neither) CLEAVE_RETURN_IF_ERROR(DrawSheet());
     if (options_.animation || neither) CLEAVE_RETURN_IF_ERROR(DrawAnimation());
     return absl::OkStatus();
@@ -65,17 +76,45 @@ class Pictures {
  private:
   absl::Status DrawStill(int64_t frame) {
     // The whole recording, so that stills of one run have one camera.
+    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(frame, "--still"));
+    CLEAVE_ASSIGN_OR_RETURN(const Image image,
+                            RenderStill(run_.mesh, run_.recording.frames, position, look_));
+    return Write(absl::StrFormat("still_%06d.png", frame), image);
+  }
+  absl::Status DrawTurntable(const std::string& which) {
+    int64_t frame = run_.recording.rows.back().frame;
+    if (which != "last" && !absl::SimpleAtoi(which, &frame)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--turntable: \"", which, "\" is neither a frame nor last"));
+    }
+    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(frame, "--turntable"));
+    TurntableOptions turntable;
+    turntable.frames_per_second = options_.animation_look.frames_per_second;
+    CLEAVE_ASSIGN_OR_RETURN(
+        const std::string bytes,
+        RenderTurntable(run_.mesh, run_.recording.frames, position, turntable, look_,
+                        ShowingProgress("drawing the turntable", program_.interrupt)));
+    const std::string path = absl::StrCat(folder_, "/turntable.webp");
+    CLEAVE_RETURN_IF_ERROR(WriteAside(path, bytes));
+    PrintResult(path);
+    PreviewOptions look = look_;
+    if (look.width == PreviewOptions().width) look.width = 480;  // of a tile
+    CLEAVE_ASSIGN_OR_RETURN(
+        const Image sheet,
+        RenderTurntableSheet(run_.mesh, run_.recording.frames, position, turntable, look,
+                             ShowingProgress("drawing the turntable's sheet", program_.interrupt)));
+    return Write("turntable.png", sheet);
+  }
+  absl::StatusOr<int64_t> PositionOf(int64_t frame, absl::string_view option) const {
     const auto& rows = run_.recording.rows;
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const IndexRow& each) { return each.frame == frame; });
     if (row == rows.end()) {
       return absl::InvalidArgumentError(
-          absl::StrCat("--still: frame ", frame, " is not in the recording, which has ",
+          absl::StrCat(option, ": frame ", frame, " is not in the recording, which has ",
                        rows.front().frame, " to ", rows.back().frame));
     }
-    CLEAVE_ASSIGN_OR_RETURN(const Image image, RenderStill(run_.mesh, run_.recording.frames,
-                                                           row - rows.begin(), look_));
-    return Write(absl::StrFormat("still_%06d.png", frame), image);
+    return row - rows.begin();
   }
   absl::Status DrawSheet() {
     PreviewOptions look = look_;
@@ -120,7 +159,8 @@ absl::Status Preview(Program& program, const Options& options) {
 }  // namespace
 
 void AddPreview(CLI::App& app, Program& program) {
-  CLI::App* verb = app.add_subcommand("preview", "Draw recorded frames: still, sheet, animation");
+  CLI::App* verb =
+      app.add_subcommand("preview", "Draw recorded frames: still, sheet, animation, turntable");
   auto options = std::make_shared<Options>();
   verb->add_option("run", options->run, "Folder of a run, or a .clv file")
       ->required()
@@ -129,6 +169,9 @@ void AddPreview(CLI::App& app, Program& program) {
       ->type_name("FRAME");
   verb->add_flag("--sheet", options->sheet, "Draw contact_sheet.png");
   verb->add_flag("--animation", options->animation, "Draw preview.webp");
+  verb->add_option("--turntable", options->turntable,
+                   "Go once round this frame: turntable.webp, and 8 views in turntable.png")
+      ->type_name("FRAME|last");
   verb->add_option("--to", options->to, "Folder for the pictures; default: RUN")->type_name("DIR");
   verb->add_option("--mesh", options->mesh,
                    "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
@@ -138,9 +181,13 @@ void AddPreview(CLI::App& app, Program& program) {
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_option("--color", options->look.color_by, "What colours tell")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ColorBy>{
-          {"region", ColorBy::kRegion}, {"piece", ColorBy::kPiece}, {"strain", ColorBy::kStrain}}))
-      ->type_name("region|piece|strain");
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, ColorBy>{{"region", ColorBy::kRegion},
+                                                                 {"piece", ColorBy::kPiece},
+                                                                 {"strain", ColorBy::kStrain},
+                                                                 {"damage", ColorBy::kDamage},
+                                                                 {"impurity", ColorBy::kImpurity}}))
+      ->type_name("region|piece|strain|damage|impurity");
   verb->add_option("--width", options->look.width, "Pixels of a picture, or of a sheet's tile")
       ->check(CLI::Range(16, kMaxImageSide))
       ->type_name("PIXELS");
@@ -165,7 +212,8 @@ void AddPreview(CLI::App& app, Program& program) {
       "Needs no display and no GPU.\n\n"
       "Examples:\n"
       "  cleave preview out/bar\n"
-      "  cleave preview out/bar --still 30 --color strain --width 1920\n");
+      "  cleave preview out/bar --still 30 --color strain --width 1920\n"
+      "  cleave preview out/bar --turntable last --color piece\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return Preview(shared, *options); };
   });

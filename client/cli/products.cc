@@ -55,16 +55,20 @@ absl::StatusOr<std::vector<std::string>> MakeProducts(const RunFolder& folder,
   if (!options.vtu && !options.ply && !options.preview) return paths;
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run, OpenRecordedRun(folder.path(), "", 1));
   const FrameSource& frames = run.recording.frames;
+  std::vector<double> potencies;
+  if (options.vtu || options.ply) {
+    CLEAVE_ASSIGN_OR_RETURN(potencies, RunPotencies(folder.path(), run.mesh));
+  }
   if (options.vtu) {
-    CLEAVE_ASSIGN_OR_RETURN(
-        const ExportResult result,
-        WriteVtuSeries(run.mesh, frames, VtuContent::kSurface, {folder.path() + "/vtu", "cleave"},
-                       ShowingProgress("writing VTU files", interrupt)));
+    CLEAVE_ASSIGN_OR_RETURN(const ExportResult result,
+                            WriteVtuSeries(run.mesh, frames, VtuContent::kSurface,
+                                           {folder.path() + "/vtu", "cleave", potencies},
+                                           ShowingProgress("writing VTU files", interrupt)));
     paths.push_back(result.collection);
   }
   if (options.ply) {
     paths.push_back(folder.path() + "/ply");
-    CLEAVE_RETURN_IF_ERROR(WritePlySeries(run.mesh, frames, {paths.back(), "cleave"},
+    CLEAVE_RETURN_IF_ERROR(WritePlySeries(run.mesh, frames, {paths.back(), "cleave", potencies},
                                           ShowingProgress("writing PLY files", interrupt))
                                .status());
   }

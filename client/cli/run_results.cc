@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -18,6 +19,8 @@
 #include "core/base/stopwatch.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
+#include "core/model/impurity_preview.h"
+#include "core/scene/validate.h"
 #include "proto/convert/scene.h"
 
 namespace cleave {
@@ -30,16 +33,32 @@ RunFolder FolderOf(const std::string& path) {
   return RunFolder((std::filesystem::path(path).parent_path() / ".").lexically_normal().string());
 }
 
-}  // namespace
-
-absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look) {
+// The scene of a run, where its folder holds one.
+absl::StatusOr<std::optional<Scene>> RunScene(const std::string& path) {
   const std::string scene_path = FolderOf(path).scene();
   std::error_code error;
-  if (!std::filesystem::exists(scene_path, error)) return absl::OkStatus();
+  if (!std::filesystem::exists(scene_path, error)) return std::nullopt;
   CLEAVE_ASSIGN_OR_RETURN(const SceneFile file, ReadSceneFile(scene_path));
   Faults faults;
-  const Scene scene = SceneFromMessage(file.scene, faults);
+  Scene scene = SceneFromMessage(file.scene, faults);
   if (!faults.ok()) return absl::InvalidArgumentError(file.Describe(faults.errors()));
+  return scene;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<double>> RunPotencies(const std::string& path, const TetMesh& mesh) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::optional<Scene> scene, RunScene(path));
+  if (!scene.has_value() || !scene->impurities.has_value()) return std::vector<double>();
+  CLEAVE_RETURN_IF_ERROR(ValidateSceneWithMesh(*scene, mesh).ToStatus());
+  CLEAVE_ASSIGN_OR_RETURN(ImpurityPreview preview, PreviewImpurities(*scene, mesh));
+  return std::move(preview.potencies);
+}
+
+absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::optional<Scene> found, RunScene(path));
+  if (!found.has_value()) return absl::OkStatus();
+  const Scene& scene = *found;
   const std::string title = look.title;
   ApplySceneLook(scene, mesh, look);
   // Reports may lie elsewhere, with a server of its own; then colliders stay where the scene puts

@@ -2,6 +2,7 @@
 #define CLEAVE_CLIENT_CLI_RUN_RESULTS_H_
 
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -28,6 +29,10 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
 // .clv's) holds its scene; else leaves them as they are. Colliders are where the folder's reports
 // say.
 absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewOptions& look);
+
+// Alpha of impurities, a node each, where the run's folder (or the .clv's) holds its scene and that
+// has impurities; else nothing. Makes the scene's model: takes the time and the memory of that.
+absl::StatusOr<std::vector<double>> RunPotencies(const std::string& path, const TetMesh& mesh);
 
 // Only every `stride`-th frame from `first` to `last` (frame numbers), at most all.
 absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,

@@ -59,8 +59,9 @@ volumes = sorted(glob.glob(FOLDER + "/vtu-volume/*.vtu"))
 assert len(surfaces) == len(volumes) == 49, (len(surfaces), len(volumes))
 for surface_path, volume_path in zip(surfaces, volumes):
   grid = read(vtkXMLUnstructuredGridReader(), surface_path)
-  assert {"piece", "displacement", "velocity", "strain"} <= names(grid.GetPointData())
-  assert {"piece", "region", "inside", "tet"} <= names(grid.GetCellData())
+  assert {"piece", "id", "rest", "displacement", "velocity", "strain", "damage"} <= \
+      names(grid.GetPointData())
+  assert {"piece", "id", "region", "inside", "tet"} <= names(grid.GetCellData())
   surface = polygons(grid)
   assert surface.GetNumberOfCells() == grid.GetNumberOfCells()
   assert open_edges(surface) == 0, surface_path
@@ -74,7 +75,7 @@ for surface_path, volume_path in zip(surfaces, volumes):
     if kind == "ply":
       assert np.array_equal(points(other), points(grid)), path
   volume = read(vtkXMLUnstructuredGridReader(), volume_path)
-  assert {"piece", "region", "strain", "broken_edges", "separated"} <= names(volume.GetCellData())
+  assert {"piece", "region", "strain", "damage", "broken_edges", "separated"} <= names(volume.GetCellData())
 
 # At rest, the surface encloses what the tets fill.
 sizes = vtkCellSizeFilter()

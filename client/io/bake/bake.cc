@@ -165,16 +165,15 @@ class Bake {
   // The surface at rest. Normals would be wrong in every other frame.
   absl::Status WriteObj(const std::string& comment) {
     ShownSurface shown;
-    std::vector<Vec3> rest_points;
-    for (const SurfacePoint& point : surface_.topology.points) rest_points.push_back(point.rest);
-    shown.points = rest_points;
+    for (const SurfacePoint& point : surface_.topology.points) shown.points.push_back(point.rest);
+    shown.rest_points = shown.points;
     shown.triangles = surface_.topology.triangles;
     shown.inside = surface_.topology.inside;
     shown.pieces = surface_.triangle_pieces;
     shown.regions = surface_.triangle_regions;
     CLEAVE_ASSIGN_OR_RETURN(
         const std::string bytes,
-        EncodeObj(shown, rest_points, materials_,
+        EncodeObj(shown, materials_,
                   {comment, options_.name, absl::StrCat(options_.name, ".mtl"), false}));
     CLEAVE_RETURN_IF_ERROR(WriteAside(PathOf("mtl"), EncodeMtl(materials_)));
     CLEAVE_RETURN_IF_ERROR(WriteAside(PathOf("obj"), bytes));

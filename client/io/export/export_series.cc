@@ -17,6 +17,7 @@
 #include "client/io/series/moved_points.h"
 #include "client/io/series/surface_sequence.h"
 #include "client/io/series/write_aside.h"
+#include "core/base/state_hash.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -44,9 +45,16 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   grid.types.assign(surface.triangles.size(), kVtuTriangle);
   const std::vector<int32_t> pieces = PointPieces(surface);
   grid.point_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
+  grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
+  grid.point_data.push_back(MakeVtuVectors("rest", surface.rest_points));
   grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
   grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
   grid.point_data.push_back(MakeVtuArray<float>("strain", surface.strains));
+  grid.point_data.push_back(MakeVtuArray<float>("damage", surface.damages));
+  if (!surface.potencies.empty()) {
+    grid.point_data.push_back(MakeVtuArray<float>("potency", surface.potencies));
+  }
+  grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", surface.pieces));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("region", surface.regions));
   grid.cell_data.push_back(MakeVtuArray<uint8_t>("inside", surface.inside));
@@ -57,8 +65,12 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
 // The volume's cells and where their points are, kept from frame to frame.
 class VolumeSequence {
  public:
-  VolumeSequence(const TetMesh& mesh, const SurfaceSequence& sequence)
-      : mesh_(mesh), sequence_(sequence), moved_(mesh, sequence.incidence()) {}
+  VolumeSequence(const TetMesh& mesh, const SurfaceSequence& sequence,
+                 const std::vector<double>& node_potencies)
+      : mesh_(mesh),
+        sequence_(sequence),
+        node_potencies_(node_potencies),
+        moved_(mesh, sequence.incidence()) {}
 
   // Call after every Advance of the sequence.
   void Advance(const Frame& frame) {
@@ -81,11 +93,13 @@ class VolumeSequence {
  private:
   void AddData(const Frame& frame, VtuGrid& grid) const {
     const std::vector<float> tet_strains = sequence_.TetStrains(frame.positions);
+    const std::vector<float> tet_damages = sequence_.TetDamages();
     std::vector<int32_t> point_pieces;
     for (const int32_t node : cells_.point_nodes) point_pieces.push_back(Piece(node));
     std::vector<int32_t> pieces;
     std::vector<int32_t> regions;
     std::vector<float> strains;
+    std::vector<float> damages;
     std::vector<uint8_t> broken;
     std::vector<uint8_t> separated;
     for (size_t cell = 0; cell < cells_.types.size(); ++cell) {
@@ -95,24 +109,44 @@ class VolumeSequence {
       regions.push_back(mesh_.region_of(cells_.cell_tets[cell]));
       // A separated tet spans a gap, which is no strain.
       strains.push_back(Separated(mask) ? 0.0f : tet_strains[tet]);
+      damages.push_back(tet_damages[tet]);
       broken.push_back(static_cast<uint8_t>(__builtin_popcount(mask)));
       separated.push_back(Separated(mask) ? 1 : 0);
     }
     grid.point_data.push_back(MakeVtuArray<int32_t>("piece", point_pieces));
     const std::vector<Vec3> displacements = Displacements(cells_.topology, grid.points);
+    std::vector<Vec3> rest_points;
+    for (const SurfacePoint& point : cells_.topology.points) rest_points.push_back(point.rest);
+    grid.point_data.push_back(MakeVtuVectors("rest", rest_points));
     grid.point_data.push_back(MakeVtuVectors("displacement", displacements));
     grid.point_data.push_back(MakeVtuVectors("velocity", moved_.velocities()));
+    if (!node_potencies_.empty()) {
+      grid.point_data.push_back(MakeVtuArray<float>("potency", PointPotencies()));
+    }
     grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
     grid.cell_data.push_back(MakeVtuArray<int32_t>("region", regions));
     grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", cells_.cell_tets));
     grid.cell_data.push_back(MakeVtuArray<float>("strain", strains));
+    grid.cell_data.push_back(MakeVtuArray<float>("damage", damages));
     grid.cell_data.push_back(MakeVtuArray<uint8_t>("broken_edges", broken));
     grid.cell_data.push_back(MakeVtuArray<uint8_t>("separated", separated));
+  }
+  std::vector<float> PointPotencies() const {
+    std::vector<float> potencies;
+    for (const SurfacePoint& point : cells_.topology.points) {
+      double mean = 0;
+      for (size_t k = 0; k < point.node_count; ++k) {
+        mean += point.weights[k] * node_potencies_[static_cast<size_t>(point.nodes[k])];
+      }
+      potencies.push_back(static_cast<float>(mean));
+    }
+    return potencies;
   }
   int32_t Piece(int32_t node) const { return sequence_.node_pieces()[static_cast<size_t>(node)]; }
 
   const TetMesh& mesh_;
   const SurfaceSequence& sequence_;
+  const std::vector<double>& node_potencies_;
   MovedPoints moved_;
   VolumeCells cells_;
 };
@@ -124,14 +158,34 @@ struct Format {
   std::function<absl::StatusOr<std::string>(const Frame& frame, const std::string& comment)> encode;
 };
 
+// Tells potencies apart in a key.
+std::string PotencyName(const std::vector<double>& potencies) {
+  StateHash hash;
+  hash.Update(potencies.data(), potencies.size() * sizeof(double));
+  return absl::StrCat(hash.Digest());
+}
+
+// What series carry beside positions, from options for the lot.
+SequenceOptions Carried(const ExportOptions& options) {
+  return {.strains = true,
+          .damages = true,
+          .displacements = true,
+          .velocities = true,
+          .node_potencies = options.node_potencies};
+}
+
 class SeriesWriter {
  public:
   SeriesWriter(const TetMesh& mesh, const ExportOptions& options, absl::string_view ending,
                absl::string_view format)
-      : options_(options), ending_(ending), key_(mesh, format) {}
+      : options_(options),
+        nodes_(mesh.node_count()),
+        ending_(ending),
+        key_(mesh, absl::StrCat(format, " ", PotencyName(options.node_potencies))) {}
 
   absl::Status Write(const FrameSource& frames, const Format& format, const Progress& progress) {
     if (frames.count <= 0) return absl::InvalidArgumentError("there are no frames to export");
+    CLEAVE_RETURN_IF_ERROR(CheckPotencies());
     CLEAVE_RETURN_IF_ERROR(MakeDirectories(options_.folder));
     for (int64_t position = 0; position < frames.count; ++position) {
       CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames.read(position));
@@ -166,11 +220,19 @@ class SeriesWriter {
   const ExportResult& result() const { return result_; }
 
  private:
+  absl::Status CheckPotencies() const {
+    const auto count = static_cast<int64_t>(options_.node_potencies.size());
+    if (count == 0 || count == nodes_) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat("node_potencies: has ", count, " items; the mesh has ", nodes_, " nodes"));
+  }
+
   std::string PathOf(const std::string& file) const {
     return options_.folder.empty() ? file : absl::StrCat(options_.folder, "/", file);
   }
 
   const ExportOptions& options_;
+  const int64_t nodes_;
   const std::string ending_;
   DataKey key_;
   std::vector<PvdEntry> entries_;
@@ -182,9 +244,9 @@ class SeriesWriter {
 absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSource& frames,
                                             VtuContent content, const ExportOptions& options,
                                             const Progress& progress) {
-  SurfaceSequence sequence(mesh, {.strains = true, .displacements = true, .velocities = true});
+  SurfaceSequence sequence(mesh, Carried(options));
   std::optional<VolumeSequence> volume;
-  if (content == VtuContent::kVolume) volume.emplace(mesh, sequence);
+  if (content == VtuContent::kVolume) volume.emplace(mesh, sequence, options.node_potencies);
   Format format;
   format.advance = [&](const Frame& frame) -> absl::Status {
     CLEAVE_RETURN_IF_ERROR(sequence.Advance(frame));
@@ -205,7 +267,7 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
                                             const ExportOptions& options,
                                             const Progress& progress) {
-  SurfaceSequence sequence(mesh, {});
+  SurfaceSequence sequence(mesh, Carried(options));
   Format format;
   format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
   format.encode = [&](const Frame&, const std::string& comment) {
@@ -225,11 +287,9 @@ absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSour
   Format format;
   format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
   format.encode = [&](const Frame&, const std::string& comment) {
-    std::vector<Vec3> rest_points;
-    for (const SurfacePoint& point : sequence.topology().points) rest_points.push_back(point.rest);
     ObjOptions of_frame = look;
     of_frame.comment = comment;
-    return EncodeObj(sequence.surface(), rest_points, materials, of_frame);
+    return EncodeObj(sequence.surface(), materials, of_frame);
   };
   SeriesWriter writer(mesh, options, "obj", absl::StrCat("obj ", options.name));
   CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/io/series/frame_source.h"
@@ -19,6 +20,8 @@ enum class VtuContent {
 struct ExportOptions {
   std::string folder;           // made where it is missing
   std::string name = "cleave";  // files are NAME_000012.vtu, the collection NAME.pvd
+  // Alpha of impurities, a finite number a node; empty: files carry none.
+  std::vector<double> node_potencies = {};
 };
 
 struct ExportResult {
@@ -28,11 +31,13 @@ struct ExportResult {
 };
 
 // Writes a file a frame and a ParaView collection of them.
-// Point data of both contents: piece, displacement (m, from rest), velocity (m/s, mean since the
-// frame before; 0 in the first). Surface: strain a point (largest principal stretch less 1, mean of
-// the tets round it); region, tet, piece and inside (1: opened by a crack) a cell. Volume: region,
-// tet, piece, strain, broken_edges (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces are
-// those of SurfaceSequence, tets the mesh file's.
+// Point data of both contents: piece, rest (m), displacement (m, from rest), velocity (m/s, mean
+// since the frame before; 0 in the first), and potency where it is given. Surface: strain a point
+// (largest principal stretch less 1, mean of the tets round it), damage a point (share of broken
+// edges, mean of the tets round it), id a point and a cell (surface_ids.h); region, tet, piece and
+// inside (1: opened by a crack) a cell. Volume: region, tet, piece, strain, damage, broken_edges
+// (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces are those of SurfaceSequence, tets the
+// mesh file's.
 //
 // A file that an earlier call made from the same data is kept, so that a cut export goes on where
 // it was. Files are written aside and renamed. After an error (or a stop by `progress`, Cancelled)
@@ -43,7 +48,8 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
                                             VtuContent content, const ExportOptions& options,
                                             const Progress& progress);
 
-// The same as PLY files of the surface (ply.h); there is no collection.
+// The same as PLY files of the surface (ply.h), with rest, velocity, strain, damage and potency a
+// point; there is no collection.
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
                                             const ExportOptions& options, const Progress& progress);
 

@@ -35,9 +35,8 @@ class Numbered {
 
 class ObjText {
  public:
-  ObjText(const ShownSurface& surface, const std::vector<Vec3>& rest_points,
-          const SurfaceMaterials& materials, const ObjOptions& options)
-      : surface_(surface), rest_points_(rest_points), materials_(materials), options_(options) {}
+  ObjText(const ShownSurface& surface, const SurfaceMaterials& materials, const ObjOptions& options)
+      : surface_(surface), materials_(materials), options_(options) {}
 
   std::string Write() {
     out_ = absl::StrFormat("# %s, time %.9g s, frame %d; m\nmtllib %s\no %s\n", options_.comment,
@@ -73,7 +72,9 @@ class ObjText {
 
   void AddCorners(size_t triangle) {
     const auto& [a, b, c] = surface_.triangles[triangle];
-    const auto rest = [&](int32_t point) { return rest_points_[static_cast<size_t>(point)]; };
+    const auto rest = [&](int32_t point) {
+      return surface_.rest_points[static_cast<size_t>(point)];
+    };
     const size_t axis = FacedAxis(rest(a), rest(b), rest(c));
     for (size_t k = 0; k < 3; ++k) {
       const int32_t point = surface_.triangles[triangle][k];
@@ -122,7 +123,6 @@ class ObjText {
   }
 
   const ShownSurface& surface_;
-  const std::vector<Vec3>& rest_points_;
   const SurfaceMaterials& materials_;
   const ObjOptions& options_;
   std::vector<std::array<Eigen::Vector3f, 3>> normals_;
@@ -135,18 +135,16 @@ class ObjText {
 }  // namespace
 
 absl::StatusOr<std::string> EncodeObj(const ShownSurface& surface,
-                                      const std::vector<Vec3>& rest_points,
                                       const SurfaceMaterials& materials,
                                       const ObjOptions& options) {
   CLEAVE_RETURN_IF_ERROR(CheckShownSurface(surface));
   if (surface.triangles.empty()) {
     return absl::InvalidArgumentError("the surface has no triangles, so no pieces to write");
   }
-  if (rest_points.size() != surface.points.size()) {
-    return absl::InvalidArgumentError(absl::StrCat("rest_points has ", rest_points.size(),
-                                                   " items, not ", surface.points.size()));
+  if (surface.rest_points.empty()) {
+    return absl::InvalidArgumentError("rest_points: are not known, so there is no texture");
   }
-  return ObjText(surface, rest_points, materials, options).Write();
+  return ObjText(surface, materials, options).Write();
 }
 
 std::string EncodeMtl(const SurfaceMaterials& materials) {

@@ -10,8 +10,10 @@
 namespace cleave {
 
 // The bytes of a PLY file (1.0, binary little-endian). Vertices: x, y, z in metres as float, and
-// red, green, blue by piece. Faces: vertex_indices, piece and region as int, inside as uchar (1:
-// opened by a crack). `comment` is one line. Errors: those of CheckShownSurface.
+// red, green, blue by piece; then, as floats, what the surface carries of rest_x, _y, _z (m),
+// velocity_x, _y, _z (m/s), strain, damage and potency. Faces: vertex_indices, piece and region as
+// int, inside as uchar (1: opened by a crack). `comment` is one line. Errors: those of
+// CheckShownSurface.
 absl::StatusOr<std::string> EncodePly(const ShownSurface& surface, absl::string_view comment);
 
 }  // namespace cleave

@@ -16,7 +16,7 @@ namespace cleave {
 // An array of a VTU file, its values little-endian as they go to disk.
 struct VtuArray {
   std::string name;
-  absl::string_view type;  // VTK's name: Float32, Float64, Int32, Int64, UInt8
+  absl::string_view type;  // VTK's name: Float32, Float64, Int32, Int64, UInt64, UInt8
   int components = 1;
   std::string bytes;
 };
@@ -25,6 +25,7 @@ inline absl::string_view VtuTypeName(float) { return "Float32"; }
 inline absl::string_view VtuTypeName(double) { return "Float64"; }
 inline absl::string_view VtuTypeName(int32_t) { return "Int32"; }
 inline absl::string_view VtuTypeName(int64_t) { return "Int64"; }
+inline absl::string_view VtuTypeName(uint64_t) { return "UInt64"; }
 inline absl::string_view VtuTypeName(uint8_t) { return "UInt8"; }
 
 // An array of one component a value.

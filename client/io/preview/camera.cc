@@ -159,6 +159,30 @@ absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                 FromEigen(up),       ground};
 }
 
+Camera Turned(const Camera& camera, double angle) {
+  const Eigen::AngleAxisd turn(angle, ToEigen(camera.ground_normal));
+  const Vector3d center = ToEigen(camera.scene_center);
+  Camera turned = camera;
+  turned.position = FromEigen(center + turn * (ToEigen(camera.position) - center));
+  turned.right = FromEigen(turn * ToEigen(camera.right));
+  turned.up = FromEigen(turn * ToEigen(camera.up));
+  turned.forward = FromEigen(turn * ToEigen(camera.forward));
+  return turned;
+}
+
+std::vector<Vec3> TurnedAround(std::span<const Vec3> points, const Camera& camera, int steps) {
+  std::vector<Vec3> all;
+  const Vector3d center = ToEigen(camera.scene_center);
+  for (int step = 0; step < steps; ++step) {
+    const Eigen::AngleAxisd turn(2 * std::numbers::pi * step / steps,
+                                 ToEigen(camera.ground_normal));
+    for (const Vec3& point : points) {
+      all.push_back(FromEigen(center + turn * (ToEigen(point) - center)));
+    }
+  }
+  return all;
+}
+
 absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraOptions& options) {
   CLEAVE_ASSIGN_OR_RETURN(const Camera camera, FrameCamera(points, 1, options));
   double widest = 0;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/base/vec3.h"
@@ -38,6 +39,13 @@ struct CameraOptions {
 // frames. `aspect` is width by height. Errors: InvalidArgument for no points, NaN or bad options.
 absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                                    const CameraOptions& options);
+
+// The camera gone round the scene's middle by an angle (rad), about the scene's up.
+Camera Turned(const Camera& camera, double angle);
+
+// The points, and where they come when the body is turned about the scene's up, as `camera` has it,
+// in `steps` equal angles: what a camera must hold that goes round.
+std::vector<Vec3> TurnedAround(std::span<const Vec3> points, const Camera& camera, int steps);
 
 // Width by height of the picture in which the points fill the frame, held within [0.75, 2.6].
 // Errors: those of FrameCamera.

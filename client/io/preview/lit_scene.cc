@@ -188,6 +188,12 @@ void LitScene::BuildColors(const RenderStyle& style) {
     }
     return;
   }
+  if (style.color_by == ColorBy::kDamage) {
+    body_.point_colors.reserve(surface.points.size());
+    for (const float damage : surface.damages)
+      body_.point_colors.push_back(ToLinear(SequentialColor(damage)));
+    return;
+  }
   if (style.color_by == ColorBy::kImpurity) {
     body_.point_colors.reserve(surface.points.size());
     for (const float impurity : surface.impurities)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <numbers>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -49,35 +51,12 @@ absl::Status Stopped(int64_t done, int64_t total) {
   return absl::CancelledError(absl::StrCat("stopped after ", done, " of ", total, " pictures"));
 }
 
-}  // namespace
-
-absl::StatusOr<Image> RenderStill(const TetMesh& mesh, const FrameSource& frames, int64_t position,
-                                  const PreviewOptions& options) {
-  if (position < 0 || position >= frames.count) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
-  }
-  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, frames, options));
-  Studio& studio = *made;
-  CLEAVE_ASSIGN_OR_RETURN(Image image, studio.Draw(position));
-  studio.DrawHead(image);
-  return image;
-}
-
-absl::StatusOr<Image> RenderContactSheet(const TetMesh& mesh, const FrameSource& frames,
-                                         const SheetOptions& sheet, const PreviewOptions& options,
-                                         const Progress& progress) {
-  if (sheet.tiles < 1 || sheet.tiles > 1000 || sheet.columns < 0 || sheet.columns > sheet.tiles) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(sheet.tiles, " tiles in ", sheet.columns,
-                     " columns: tiles must be in [1, 1000], columns in [0, tiles]; 0 chooses"));
-  }
-  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, frames, options));
-  Studio& studio = *made;
-  const std::vector<int64_t> chosen = ChooseFrames(studio.survey(), sheet.tiles);
-  const auto tiles = static_cast<int>(chosen.size());
-  const int columns =
-      sheet.columns > 0 ? std::min(sheet.columns, tiles) : ChooseColumns(tiles, studio.aspect());
+// A grid of pictures in their order, under title and legend.
+absl::StatusOr<Image> ComposeSheet(const Studio& studio, int tiles, int columns,
+                                   const PreviewOptions& options,
+                                   const std::function<absl::StatusOr<Image>(int)>& draw,
+                                   const Progress& progress) {
+  if (columns == 0) columns = ChooseColumns(tiles, studio.aspect());
   const int rows = (tiles + columns - 1) / columns;
   const int gap = std::max(2, studio.width() / 60);
   const double letters = 1.25 * studio.LetterHeight();
@@ -105,12 +84,70 @@ absl::StatusOr<Image> RenderContactSheet(const TetMesh& mesh, const FrameSource&
   DrawLegend(studio.legend(), legend_left, (two_lines ? 4.1 : 1.75) * letters, legend_letters,
              image);
   for (int i = 0; i < tiles; ++i) {
-    CLEAVE_ASSIGN_OR_RETURN(const Image tile, studio.Draw(chosen[static_cast<size_t>(i)]));
+    CLEAVE_ASSIGN_OR_RETURN(const Image tile, draw(i));
     Paste(tile, gap + i % columns * (studio.width() + gap),
           head + i / columns * (studio.height() + gap), image);
     if (progress && !progress(i + 1, tiles)) return Stopped(i + 1, tiles);
   }
   return image;
+}
+
+absl::Status CheckTurntable(const TurntableOptions& turntable) {
+  Faults faults;
+  if (turntable.pictures < 2 || turntable.pictures > 1000) {
+    faults.Error("pictures", absl::StrCat(turntable.pictures, " is outside [2, 1000]"));
+  }
+  if (turntable.tiles < 2 || turntable.tiles > 100) {
+    faults.Error("tiles", absl::StrCat(turntable.tiles, " is outside [2, 100]"));
+  }
+  if (!(turntable.frames_per_second >= 0.1 && turntable.frames_per_second <= 1000)) {
+    faults.Error("frames_per_second",
+                 absl::StrCat(turntable.frames_per_second, " is outside [0.1, 1000]"));
+  }
+  return faults.ToStatus();
+}
+
+// A run of one of its frames.
+absl::StatusOr<FrameSource> OneOf(const FrameSource& frames, int64_t position) {
+  if (position < 0 || position >= frames.count) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
+  }
+  return FrameSource{1, [&frames, position](int64_t) { return frames.read(position); }};
+}
+
+double Angle(int picture, int pictures) { return 2 * std::numbers::pi * picture / pictures; }
+
+}  // namespace
+
+absl::StatusOr<Image> RenderStill(const TetMesh& mesh, const FrameSource& frames, int64_t position,
+                                  const PreviewOptions& options) {
+  if (position < 0 || position >= frames.count) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, frames, options));
+  Studio& studio = *made;
+  CLEAVE_ASSIGN_OR_RETURN(Image image, studio.Draw(position));
+  studio.DrawHead(image);
+  return image;
+}
+
+absl::StatusOr<Image> RenderContactSheet(const TetMesh& mesh, const FrameSource& frames,
+                                         const SheetOptions& sheet, const PreviewOptions& options,
+                                         const Progress& progress) {
+  if (sheet.tiles < 1 || sheet.tiles > 1000 || sheet.columns < 0 || sheet.columns > sheet.tiles) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(sheet.tiles, " tiles in ", sheet.columns,
+                     " columns: tiles must be in [1, 1000], columns in [0, tiles]; 0 chooses"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, frames, options));
+  Studio& studio = *made;
+  const std::vector<int64_t> chosen = ChooseFrames(studio.survey(), sheet.tiles);
+  const auto tiles = static_cast<int>(chosen.size());
+  return ComposeSheet(
+      studio, tiles, std::min(sheet.columns, tiles), options,
+      [&](int i) { return studio.Draw(chosen[static_cast<size_t>(i)]); }, progress);
 }
 
 absl::StatusOr<std::string> RenderAnimation(const TetMesh& mesh, const FrameSource& frames,
@@ -144,6 +181,38 @@ absl::StatusOr<std::string> RenderAnimation(const TetMesh& mesh, const FrameSour
     if (progress && !progress(i + 1, count)) return Stopped(i + 1, count);
   }
   return film.Finish();
+}
+
+absl::StatusOr<std::string> RenderTurntable(const TetMesh& mesh, const FrameSource& frames,
+                                            int64_t position, const TurntableOptions& turntable,
+                                            const PreviewOptions& options,
+                                            const Progress& progress) {
+  CLEAVE_RETURN_IF_ERROR(CheckTurntable(turntable));
+  CLEAVE_ASSIGN_OR_RETURN(const FrameSource one, OneOf(frames, position));
+  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, one, options, Stand::kTurntable));
+  Studio& studio = *made;
+  CLEAVE_ASSIGN_OR_RETURN(WebpAnimation film, WebpAnimation::Create(studio.width(), studio.height(),
+                                                                    turntable.quality));
+  for (int i = 0; i < turntable.pictures; ++i) {
+    CLEAVE_ASSIGN_OR_RETURN(Image image, studio.DrawTurned(0, Angle(i, turntable.pictures)));
+    studio.DrawHead(image);
+    CLEAVE_RETURN_IF_ERROR(film.Add(image, 1 / turntable.frames_per_second));
+    if (progress && !progress(i + 1, turntable.pictures)) return Stopped(i + 1, turntable.pictures);
+  }
+  return film.Finish();
+}
+
+absl::StatusOr<Image> RenderTurntableSheet(const TetMesh& mesh, const FrameSource& frames,
+                                           int64_t position, const TurntableOptions& turntable,
+                                           const PreviewOptions& options,
+                                           const Progress& progress) {
+  CLEAVE_RETURN_IF_ERROR(CheckTurntable(turntable));
+  CLEAVE_ASSIGN_OR_RETURN(const FrameSource one, OneOf(frames, position));
+  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, one, options, Stand::kTurntable));
+  Studio& studio = *made;
+  return ComposeSheet(
+      studio, turntable.tiles, 0, options,
+      [&](int i) { return studio.DrawTurned(0, Angle(i, turntable.tiles)); }, progress);
 }
 
 absl::Status WritePng(const std::string& path, const Image& image) {

@@ -32,7 +32,9 @@ struct PreviewOptions {
   // Of the mesh's region ids; empty: a slot a region, by ascending id, with the mesh's names.
   std::map<int32_t, RegionLook> regions;
   std::optional<double> strain_limit;  // absent: a round number that 1 % of the surface exceeds
-  std::vector<Prop> props;             // colliders, in grey
+  // Alpha of impurities, a finite number a node, for ColorBy::kImpurity.
+  std::vector<double> node_potencies;
+  std::vector<Prop> props;  // colliders, in grey
   CameraOptions camera;
   std::string title;  // of the picture or sheet; may be empty
 };
@@ -46,6 +48,13 @@ struct AnimationOptions {
   double frames_per_second = 24;  // of the animation, whatever the run's are
   int max_frames = 240;           // longer runs are thinned evenly
   double hold_seconds = 1;        // how long the last picture stays
+  double quality = 82;            // of WebP, 0 to 100
+};
+
+struct TurntableOptions {
+  int pictures = 72;              // of the turn, in [2, 1000]
+  double frames_per_second = 24;  // of the animation
+  int tiles = 8;                  // of the sheet, in [2, 100]
   double quality = 82;            // of WebP, 0 to 100
 };
 
@@ -68,6 +77,16 @@ absl::StatusOr<std::string> RenderAnimation(const TetMesh& mesh, const FrameSour
                                             const AnimationOptions& animation,
                                             const PreviewOptions& options,
                                             const Progress& progress);
+
+// One frame, while the camera goes once round it: at one distance, from which it always sees all of
+// that frame, and light goes along. An endless animation, and a sheet of views from equal angles.
+absl::StatusOr<std::string> RenderTurntable(const TetMesh& mesh, const FrameSource& frames,
+                                            int64_t position, const TurntableOptions& turntable,
+                                            const PreviewOptions& options,
+                                            const Progress& progress);
+absl::StatusOr<Image> RenderTurntableSheet(const TetMesh& mesh, const FrameSource& frames,
+                                           int64_t position, const TurntableOptions& turntable,
+                                           const PreviewOptions& options, const Progress& progress);
 
 // Writes a PNG file aside and renames it to `path`.
 absl::Status WritePng(const std::string& path, const Image& image);

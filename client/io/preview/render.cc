@@ -80,6 +80,8 @@ absl::Status CheckRender(const ShownSurface& surface, const RenderStyle& style, 
       faults.Error("color_by", "the surface carries no strains");
     }
   }
+  if (style.color_by == ColorBy::kDamage && surface.damages.size() != surface.points.size())
+    faults.Error("color_by", "the surface carries no damages");
   if (style.color_by == ColorBy::kImpurity && surface.impurities.size() != surface.points.size())
     faults.Error("color_by", "the surface carries no impurities");
   CLEAVE_RETURN_IF_ERROR(faults.ToStatus());

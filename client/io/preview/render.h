@@ -18,6 +18,7 @@ enum class ColorBy {
   kRegion,  // the region's colour outside, a light one inside cracks
   kPiece,   // a colour a piece, lighter inside cracks
   kStrain,  // largest principal strain
+  kDamage,  // share of broken edges
   kImpurity,
 };
 
@@ -41,7 +42,7 @@ class Renderer {
   // A picture of `width` x `height` pixels, each 1 to kMaxImageSide. A surface without triangles
   // gives the bare ground. `props` are drawn beside it in one grey, whatever their regions. Errors:
   // InvalidArgument for a bad surface (CheckShownSurface), size or style; ColorBy::kStrain needs
-  // strains of `surface`, kImpurity its impurities.
+  // strains of `surface`, kDamage its damages, kImpurity its impurities.
   absl::StatusOr<Image> Render(const ShownSurface& surface, const Camera& camera,
                                const RenderStyle& style, int width, int height,
                                const ShownSurface& props = {});

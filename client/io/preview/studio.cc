@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int64_t kSurveyed = 256;
 constexpr int64_t kStrainFrames = 12;
+constexpr int kFramedTurns = 24;
 constexpr Color kFaint = {0.42f, 0.44f, 0.47f};
 
 int Round(double value) { return static_cast<int>(std::lround(value)); }
@@ -59,7 +61,20 @@ std::map<int32_t, RegionLook> LooksOf(const TetMesh& mesh) {
   return looks;
 }
 
-absl::Status CheckOptions(const PreviewOptions& options) {
+double Worst(const std::vector<double>& potencies) {
+  double worst = 0;
+  for (const double potency : potencies) worst = std::max(worst, std::abs(potency));
+  return worst;
+}
+
+// Of a camera above the ground, degrees.
+double Elevation(const Camera& camera) {
+  double sine = 0;
+  for (size_t k = 0; k < 3; ++k) sine -= camera.forward[k] * camera.ground_normal[k];
+  return std::asin(std::clamp(sine, -1.0, 1.0)) * 180 / std::numbers::pi;
+}
+
+absl::Status CheckOptions(const TetMesh& mesh, const PreviewOptions& options) {
   Faults faults;
   if (options.width < 16 || options.width > kMaxImageSide) {
     faults.Error("width", absl::StrCat(options.width, " is outside [16, ", kMaxImageSide, "]"));
@@ -70,6 +85,13 @@ absl::Status CheckOptions(const PreviewOptions& options) {
   }
   if (options.strain_limit && !(*options.strain_limit > 0)) {
     faults.Error("strain_limit", absl::StrCat(*options.strain_limit, " is not above 0"));
+  }
+  const auto potencies = static_cast<int64_t>(options.node_potencies.size());
+  if (potencies != 0 && potencies != mesh.node_count()) {
+    faults.Error("node_potencies", absl::StrCat("has ", potencies, " items; the mesh has ",
+                                                mesh.node_count(), " nodes"));
+  } else if (options.color_by == ColorBy::kImpurity && potencies == 0) {
+    faults.Error("color_by", "there are no impurities to show");
   }
   return faults.ToStatus();
 }
@@ -82,26 +104,28 @@ Studio::Studio(Renderer renderer, const TetMesh& mesh, const FrameSource& frames
       mesh_(mesh),
       frames_(frames),
       options_(options),
-      sequence_(mesh, {.strains = options.color_by == ColorBy::kStrain}) {}
+      sequence_(mesh, {.strains = options.color_by == ColorBy::kStrain,
+                       .damages = options.color_by == ColorBy::kDamage,
+                       .node_potencies = options.node_potencies}) {}
 
 absl::StatusOr<std::unique_ptr<Studio>> Studio::Create(const TetMesh& mesh,
                                                        const FrameSource& frames,
-                                                       const PreviewOptions& options) {
-  CLEAVE_RETURN_IF_ERROR(CheckOptions(options));
+                                                       const PreviewOptions& options, Stand stand) {
+  CLEAVE_RETURN_IF_ERROR(CheckOptions(mesh, options));
   CLEAVE_ASSIGN_OR_RETURN(Renderer renderer, Renderer::Create());
   std::unique_ptr<Studio> studio(new Studio(std::move(renderer), mesh, frames, options));
   CLEAVE_ASSIGN_OR_RETURN(studio->survey_, SurveyMotion(mesh, frames, kSurveyed));
-  CLEAVE_RETURN_IF_ERROR(studio->Prepare());
+  CLEAVE_RETURN_IF_ERROR(studio->Prepare(stand));
   return studio;
 }
 
 double Studio::LetterHeight() const { return std::clamp(options_.width / 70.0, 7.5, 28.0); }
 
-absl::StatusOr<Image> Studio::Draw(int64_t position) {
+absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
   CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
   CLEAVE_RETURN_IF_ERROR(sequence_.Advance(frame));
   CLEAVE_ASSIGN_OR_RETURN(
-      Image image, renderer_.Render(sequence_.surface(), camera_, style_, options_.width, height_,
+      Image image, renderer_.Render(sequence_.surface(), camera, style_, options_.width, height_,
                                     PropsAt(options_.props, frame.frame)));
   const double size = LetterHeight();
   const double margin = 1.3 * size;
@@ -132,14 +156,21 @@ void Studio::DrawHead(Image& image) const {
   DrawLegend(legend_, options_.width - margin - width, baseline, 0.85 * size, image);
 }
 
-absl::Status Studio::Prepare() {
+absl::Status Studio::Prepare(Stand stand) {
   std::vector<Vec3> framed = survey_.points;
   const std::vector<Vec3> props = PropPointsNear(options_.props, framed);
   framed.insert(framed.end(), props.begin(), props.end());
-  CLEAVE_ASSIGN_OR_RETURN(const double natural, NaturalAspect(framed, options_.camera));
+  CameraOptions look = options_.camera;
+  if (stand == Stand::kTurntable) {
+    CLEAVE_ASSIGN_OR_RETURN(const Camera still, FrameCamera(framed, 1, look));
+    framed = TurnedAround(framed, still, kFramedTurns);
+    look.up = still.ground_normal;
+    if (!look.elevation) look.elevation = Elevation(still);
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const double natural, NaturalAspect(framed, look));
   height_ = options_.height > 0 ? options_.height
                                 : std::clamp(Round(options_.width / natural), 16, kMaxImageSide);
-  CLEAVE_ASSIGN_OR_RETURN(camera_, FrameCamera(framed, aspect(), options_.camera));
+  CLEAVE_ASSIGN_OR_RETURN(camera_, FrameCamera(framed, aspect(), look));
   const size_t count = survey_.times.size();
   if (count > 1) {
     step_ = (survey_.times.back() - survey_.times.front()) / static_cast<double>(count - 1);
@@ -147,7 +178,7 @@ absl::Status Studio::Prepare() {
   style_.color_by = options_.color_by;
   style_.samples = options_.samples;
   const auto looks = options_.regions.empty() ? LooksOf(mesh_) : options_.regions;
-  for (const auto& [region, look] : looks) style_.region_slots[region] = look.slot;
+  for (const auto& [region, region_look] : looks) style_.region_slots[region] = region_look.slot;
   switch (options_.color_by) {
     case ColorBy::kStrain:
       CLEAVE_RETURN_IF_ERROR(ChooseStrainLimit());
@@ -158,9 +189,18 @@ absl::Status Studio::Prepare() {
     case ColorBy::kRegion:
       AddSwatches(looks);
       break;
-    case ColorBy::kPiece:
+    case ColorBy::kDamage:
+      legend_.map_title = "broken edges of the tets";
+      legend_.map_low = "0";
+      legend_.map_high = "100 %";
+      break;
     case ColorBy::kImpurity:
-      break;  // pieces have no names, runs no impurities
+      legend_.swatches = {
+          {"pure", ImpurityColor(0)},
+          {absl::StrFormat("potency %.3g", Worst(options_.node_potencies)), ImpurityColor(1)}};
+      break;
+    case ColorBy::kPiece:
+      break;  // pieces have no names
   }
   return absl::OkStatus();
 }

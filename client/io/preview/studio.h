@@ -14,6 +14,9 @@
 
 namespace cleave {
 
+// What the camera stands on.
+enum class Stand { kStill, kTurntable };
+
 // Everything that the pictures of one run share: camera, colours, legend. Not thread-safe.
 class Studio {
  public:
@@ -21,7 +24,8 @@ class Studio {
   // InvalidArgument for bad options or frames, Unavailable without a renderer.
   static absl::StatusOr<std::unique_ptr<Studio>> Create(const TetMesh& mesh,
                                                         const FrameSource& frames,
-                                                        const PreviewOptions& options);
+                                                        const PreviewOptions& options,
+                                                        Stand stand = Stand::kStill);
 
   const MotionSurvey& survey() const { return survey_; }
   const Legend& legend() const { return legend_; }
@@ -32,7 +36,11 @@ class Studio {
 
   // The picture of a frame, with time, pieces and broken edges at its foot. Frames are drawn in
   // ascending order.
-  absl::StatusOr<Image> Draw(int64_t position);
+  absl::StatusOr<Image> Draw(int64_t position) { return Draw(position, camera_); }
+  // The same with the camera gone round by an angle (rad). Precondition: Stand::kTurntable.
+  absl::StatusOr<Image> DrawTurned(int64_t position, double angle) {
+    return Draw(position, Turned(camera_, angle));
+  }
 
   // Title and legend on top of a picture.
   void DrawHead(Image& image) const;
@@ -40,7 +48,8 @@ class Studio {
  private:
   Studio(Renderer renderer, const TetMesh& mesh, const FrameSource& frames,
          const PreviewOptions& options);
-  absl::Status Prepare();
+  absl::Status Prepare(Stand stand);
+  absl::StatusOr<Image> Draw(int64_t position, const Camera& camera);
   void AddSwatches(const std::map<int32_t, RegionLook>& looks);
   absl::Status ChooseStrainLimit();
 
@@ -50,7 +59,7 @@ class Studio {
   const PreviewOptions& options_;
   SurfaceSequence sequence_;
   MotionSurvey survey_;
-  Camera camera_;
+  Camera camera_;  // on a turntable, one that sees everything from wherever it is turned
   RenderStyle style_;
   Legend legend_;
   int height_ = 0;

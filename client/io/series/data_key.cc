@@ -9,7 +9,7 @@ namespace cleave {
 namespace {
 
 // Raised whenever the files made from the same frames change.
-constexpr int kExportVersion = 2;
+constexpr int kExportVersion = 3;
 
 template <typename T>
 void Absorb(const std::vector<T>& values, StateHash& hash) {

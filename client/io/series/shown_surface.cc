@@ -48,14 +48,20 @@ absl::Status CheckShownSurface(const ShownSurface& surface) {
   CheckSize("inside", surface.inside.size(), triangles, false, faults);
   CheckSize("regions", surface.regions.size(), triangles, false, faults);
   CheckSize("strains", surface.strains.size(), points, true, faults);
+  CheckSize("damages", surface.damages.size(), points, true, faults);
+  CheckSize("potencies", surface.potencies.size(), points, true, faults);
   CheckSize("impurities", surface.impurities.size(), points, true, faults);
+  CheckSize("rest_points", surface.rest_points.size(), points, true, faults);
   CheckSize("displacements", surface.displacements.size(), points, true, faults);
   CheckSize("velocities", surface.velocities.size(), points, true, faults);
   CheckFinite("points", surface.points, faults);
   CheckFinite("displacements", surface.displacements, faults);
   CheckFinite("velocities", surface.velocities, faults);
   CheckFinite("strains", surface.strains, faults);
+  CheckFinite("damages", surface.damages, faults);
+  CheckFinite("potencies", surface.potencies, faults);
   CheckFinite("impurities", surface.impurities, faults);
+  CheckFinite("rest_points", surface.rest_points, faults);
   for (size_t i = 0; i < triangles; ++i) {
     for (const int32_t point : surface.triangles[i]) {
       if (point >= 0 && static_cast<size_t>(point) < points) continue;

@@ -27,7 +27,10 @@ struct ShownSurface {
 
   // One a point, or empty where unknown.
   std::vector<float> strains;       // largest principal stretch minus 1
+  std::vector<float> damages;       // [0, 1], share of the broken edges of the tets round it
+  std::vector<float> potencies;     // alpha of impurities
   std::vector<float> impurities;    // [0, 1], 1 for the worst of the body
+  std::vector<Vec3> rest_points;    // m
   std::vector<Vec3> displacements;  // m, from rest
   std::vector<Vec3> velocities;     // m/s
 };

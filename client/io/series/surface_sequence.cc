@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -28,6 +29,23 @@ Eigen::Matrix3d EdgeMatrix(const std::vector<Vec3>& positions, const std::array<
   Eigen::Matrix3d edges;
   for (size_t k = 1; k < 4; ++k) edges.col(static_cast<Eigen::Index>(k) - 1) = at(k) - at(0);
   return edges;
+}
+
+// For each point, the mean over the nodes on its side.
+void MeanOfOwners(const SurfaceTopology& topology, const std::vector<float>& node_values,
+                  std::vector<float>& values) {
+  values.resize(topology.points.size());
+  for (size_t i = 0; i < topology.points.size(); ++i) {
+    const SurfacePoint& point = topology.points[i];
+    float sum = 0;
+    float count = 0;
+    for (size_t k = 0; k < point.node_count; ++k) {
+      if ((point.owners >> k & 1) == 0) continue;
+      sum += node_values[static_cast<size_t>(point.nodes[k])];
+      count += 1;
+    }
+    values[i] = count > 0 ? sum / count : 0.0f;
+  }
 }
 
 }  // namespace
@@ -101,6 +119,12 @@ void SurfaceSequence::TakeApart(const Frame& frame) {
     shown_.pieces[i] = node_pieces_[static_cast<size_t>(topology.nodes[i])];
     shown_.regions[i] = mesh_.region_of(topology.tets[i]);
   }
+  shown_.rest_points.resize(topology.points.size());
+  for (size_t i = 0; i < topology.points.size(); ++i) {
+    shown_.rest_points[i] = topology.points[i].rest;
+  }
+  if (options_.damages) FindDamages();
+  if (!options_.node_potencies.empty()) FindPotencies();
 }
 
 std::vector<float> SurfaceSequence::TetStrains(const std::vector<Vec3>& positions) const {
@@ -119,6 +143,45 @@ std::vector<float> SurfaceSequence::TetStrains(const std::vector<Vec3>& position
   return strains;
 }
 
+std::vector<float> SurfaceSequence::TetDamages() const {
+  std::vector<float> damages;
+  damages.reserve(topology().tet_masks.size());
+  for (const EdgeMask mask : topology().tet_masks) {
+    damages.push_back(static_cast<float>(std::popcount(mask)) / 6);
+  }
+  return damages;
+}
+
+void SurfaceSequence::FindDamages() {
+  const std::vector<float> tet_damages = TetDamages();
+  std::vector<float> node_damages(mesh_.rest_positions.size());
+  for (int64_t node = 0; node < mesh_.node_count(); ++node) {
+    const auto tets = incidence_.node_tets[node];
+    float sum = 0;
+    for (const int32_t tet : tets) sum += tet_damages[static_cast<size_t>(tet)];
+    node_damages[static_cast<size_t>(node)] =
+        tets.empty() ? 0 : sum / static_cast<float>(tets.size());
+  }
+  MeanOfOwners(topology(), node_damages, shown_.damages);
+}
+
+void SurfaceSequence::FindPotencies() {
+  const std::vector<double>& potencies = options_.node_potencies;
+  double worst = 0;
+  for (const double potency : potencies) worst = std::max(worst, std::abs(potency));
+  shown_.potencies.resize(topology().points.size());
+  shown_.impurities.resize(topology().points.size());
+  for (size_t i = 0; i < topology().points.size(); ++i) {
+    const SurfacePoint& point = topology().points[i];
+    double mean = 0;
+    for (size_t k = 0; k < point.node_count; ++k) {
+      mean += point.weights[k] * potencies[static_cast<size_t>(point.nodes[k])];
+    }
+    shown_.potencies[i] = static_cast<float>(mean);
+    shown_.impurities[i] = worst > 0 ? static_cast<float>(std::abs(mean) / worst) : 0;
+  }
+}
+
 void SurfaceSequence::FindStrains(const std::vector<Vec3>& positions) {
   const std::vector<float> tet_strains = TetStrains(positions);
   std::vector<float> node_strains(mesh_.rest_positions.size());
@@ -135,18 +198,7 @@ void SurfaceSequence::FindStrains(const std::vector<Vec3>& positions) {
       node_strains[static_cast<size_t>(node)] = volume > 0 ? sum / volume : 0.0f;
     }
   });
-  shown_.strains.resize(topology().points.size());
-  for (size_t i = 0; i < topology().points.size(); ++i) {
-    const SurfacePoint& point = topology().points[i];
-    float sum = 0;
-    float count = 0;
-    for (size_t k = 0; k < point.node_count; ++k) {
-      if ((point.owners >> k & 1) == 0) continue;
-      sum += node_strains[static_cast<size_t>(point.nodes[k])];
-      count += 1;
-    }
-    shown_.strains[i] = count > 0 ? sum / count : 0.0f;
-  }
+  MeanOfOwners(topology(), node_strains, shown_.strains);
 }
 
 }  // namespace cleave

@@ -20,8 +20,11 @@ namespace cleave {
 // What a sequence works out beside positions.
 struct SequenceOptions {
   bool strains = false;
+  bool damages = false;
   bool displacements = false;
   bool velocities = false;
+  // Alpha of impurities, a node each; empty: the surface carries none. Precondition: finite.
+  std::vector<double> node_potencies = {};
 };
 
 // Turns the frames of one run, given in order, into the surfaces to be seen. Only what is round
@@ -42,6 +45,7 @@ class SurfaceSequence {
   // that were given, and are the simulation's own where none was left out. Strains are means over
   // the live tets at the nodes (0 where there is none); velocities are means since the frame
   // before, 0 in the first.
+  // Damages are means over all tets at the nodes on a point's side; potencies are interpolated.
   const ShownSurface& surface() const { return shown_; }
   const SurfaceTopology& topology() const { return surface_->topology(); }
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
@@ -50,12 +54,16 @@ class SurfaceSequence {
   // Whether the topology is another one than a frame before.
   bool changed() const { return changed_; }
 
+  // The share of broken edges of every tet, in [0, 1].
+  std::vector<float> TetDamages() const;
   // Largest principal stretch minus 1 of every tet at the node positions given (m), as flat tets
   // have it: 0 for a tet without rest volume.
   std::vector<float> TetStrains(const std::vector<Vec3>& positions) const;
 
  private:
   void TakeApart(const Frame& frame);
+  void FindDamages();
+  void FindPotencies();
   void FindStrains(const std::vector<Vec3>& positions);
 
   const TetMesh& mesh_;

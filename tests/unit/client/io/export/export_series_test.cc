@@ -114,6 +114,22 @@ TEST_F(ExportSeriesTest, SurfaceSeriesShowsPiecesInsideFacesAndVelocities) {
     EXPECT_NEAR(velocities[3 * i + 2], 10, 1e-4);
     EXPECT_NEAR(displacements[3 * i + 2], 2, 1e-5);
   }
+  const auto rest = broken.Values<float>("PointData.rest");
+  const auto damages = broken.Values<float>("PointData.damage");
+  ASSERT_EQ(rest.size(), displacements.size());
+  ASSERT_EQ(damages.size(), pieces.size());
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    // All tets at the tip have lost half of their edges; the tet below none.
+    if (pieces[i] == 1) {
+      EXPECT_FLOAT_EQ(damages[i], 0.5f);
+    }
+    EXPECT_LE(rest[3 * i + 2], 1.0f);
+  }
+  EXPECT_THAT(damages, Contains(0));
+  const auto ids = broken.Values<uint64_t>("PointData.id");
+  EXPECT_EQ(std::set<uint64_t>(ids.begin(), ids.end()).size(), pieces.size());
+  EXPECT_EQ(broken.Values<uint64_t>("CellData.id").size(), regions.size());
+  EXPECT_THAT(broken.Values<float>("PointData.potency"), ::testing::IsEmpty());
   for (const int64_t point : broken.Values<int64_t>("Cells.connectivity")) {
     EXPECT_LT(point, broken.points);
   }
@@ -131,6 +147,29 @@ TEST_F(ExportSeriesTest, VolumeSeriesSplitsSeparatedTets) {
               ::testing::ElementsAre(0, 3, 3, 3, 3));
   EXPECT_THAT(broken.Values<int32_t>("CellData.piece"), ::testing::ElementsAre(0, 0, 0, 0, 1));
   EXPECT_THAT(broken.Values<int32_t>("CellData.region"), ::testing::ElementsAre(5, 6, 6, 6, 6));
+}
+
+TEST_F(ExportSeriesTest, PotencyIsInterpolatedWhereItIsGiven) {
+  options_.node_potencies = {0, 0, 0, 0, 4};
+  for (const VtuContent content : {VtuContent::kSurface, VtuContent::kVolume}) {
+    const auto result = WriteVtuSeries(mesh_, FlyingTip(mesh_), content, options_, nullptr);
+    ASSERT_TRUE(result.ok()) << result.status();
+    EXPECT_EQ(result->kept, 0);
+    const ReadVtu broken = Vtu("run_000004.vtu");
+    const auto potencies = broken.Values<float>("PointData.potency");
+    const auto rest = broken.Values<float>("PointData.rest");
+    ASSERT_EQ(potencies.size(), static_cast<size_t>(broken.points));
+    // It is 4 at the tip and 0 at the base, so 4 z in between.
+    for (size_t i = 0; i < potencies.size(); ++i) {
+      EXPECT_NEAR(potencies[i], 4 * std::max(rest[3 * i + 2], 0.0f), 1e-6);
+    }
+  }
+  EXPECT_THAT(Vtu("run_000004.vtu").Values<float>("CellData.damage"),
+              ::testing::ElementsAre(0, 0.5f, 0.5f, 0.5f, 0.5f));
+  options_.node_potencies.pop_back();
+  EXPECT_THAT(
+      std::string(WritePlySeries(mesh_, FlyingTip(mesh_), options_, nullptr).status().message()),
+      HasSubstr("node_potencies: has 4 items; the mesh has 5 nodes"));
 }
 
 TEST_F(ExportSeriesTest, AStoppedExportGoesOnWithTheSameFiles) {

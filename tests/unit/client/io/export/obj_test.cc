@@ -41,6 +41,7 @@ ShownSurface TwoTetrahedra() {
                                                        {first, first + 1, first + 3},
                                                        {first, first + 2, first + 1}});
   }
+  surface.rest_points = surface.points;
   surface.pieces = {1, 1, 1, 1, 0, 0, 0, 0};
   surface.inside = {0, 1, 0, 0, 0, 0, 0, 0};
   surface.regions = {4, 4, 4, 4, 2, 2, 2, 2};
@@ -49,8 +50,8 @@ ShownSurface TwoTetrahedra() {
 
 TEST(Obj, ReadsBackAsWritten) {
   const ShownSurface surface = TwoTetrahedra();
-  const auto bytes = EncodeObj(surface, surface.points, SurfaceMaterials(TwoRegions()),
-                               {"key", "body", "body.mtl", true});
+  const auto bytes =
+      EncodeObj(surface, SurfaceMaterials(TwoRegions()), {"key", "body", "body.mtl", true});
   ASSERT_TRUE(bytes.ok()) << bytes.status();
   EXPECT_TRUE(absl::StartsWith(*bytes, "# key, time 0.25 s, frame 3"));
   std::vector<Vec3> points;
@@ -106,12 +107,17 @@ TEST(Obj, TextureIsTheRestShapeAlongTheAxisThatIsFaced) {
   EXPECT_EQ(RestUv({1, 2, 3}, 1), (std::array<double, 2>{3, 1}));
 }
 
-TEST(Obj, SurfacesWithoutFacesAreRefused) {
+TEST(Obj, SurfacesWithoutFacesOrRestPointsAreRefused) {
   const SurfaceMaterials materials(TwoRegions());
-  EXPECT_THAT(std::string(EncodeObj({}, {}, materials, {}).status().message()),
+  EXPECT_THAT(std::string(EncodeObj({}, materials, {}).status().message()),
               HasSubstr("no triangles"));
-  EXPECT_THAT(std::string(EncodeObj(TwoTetrahedra(), {}, materials, {}).status().message()),
-              HasSubstr("rest_points has 0 items, not 8"));
+  ShownSurface surface = TwoTetrahedra();
+  surface.rest_points.pop_back();
+  EXPECT_THAT(std::string(EncodeObj(surface, materials, {}).status().message()),
+              HasSubstr("rest_points: has 7 items, not 8"));
+  surface.rest_points.clear();
+  EXPECT_THAT(std::string(EncodeObj(surface, materials, {}).status().message()),
+              HasSubstr("rest_points: are not known"));
 }
 
 }  // namespace

@@ -49,6 +49,31 @@ TEST(Ply, ReadsBackAsWritten) {
   EXPECT_TRUE(reader.Finish("faces").ok());
 }
 
+TEST(Ply, CarriesWhatIsKnownOfThePoints) {
+  ShownSurface surface = TwoTriangles();
+  surface.rest_points.assign(6, {1, 2, 3});
+  surface.velocities.assign(6, {4, 5, 6});
+  surface.damages.assign(6, 0.5f);
+  const auto bytes = EncodePly(surface, "key");
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  const std::string end = "end_header\n";
+  const size_t data = bytes->find(end) + end.size();
+  EXPECT_THAT(bytes->substr(0, data),
+              HasSubstr("property uchar blue\nproperty float rest_x\nproperty float rest_y\n"
+                        "property float rest_z\nproperty float velocity_x\n"));
+  EXPECT_THAT(bytes->substr(0, data),
+              HasSubstr("property float velocity_z\nproperty float damage\nelement face 2\n"));
+  ByteReader reader(absl::string_view(*bytes).substr(data));
+  for (size_t i = 0; i < 6; ++i) {
+    reader.GetBytes(15);
+    for (const float value : {1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 0.5f}) {
+      EXPECT_EQ(reader.Get<float>(), value);
+    }
+  }
+  reader.GetBytes(2 * 22);
+  EXPECT_TRUE(reader.Finish("faces").ok());
+}
+
 TEST(Ply, BadSurfacesAreRefusedByName) {
   ShownSurface surface = TwoTriangles();
   surface.points[4][1] = std::numeric_limits<double>::quiet_NaN();

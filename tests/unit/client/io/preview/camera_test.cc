@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace cleave {
@@ -48,6 +49,32 @@ TEST(Camera, HoldsEveryPointWithinTheMarginAndFillsThePicture) {
       EXPECT_GE(most, 0.65);
     }
   }
+}
+
+TEST(Camera, OnATurntableSeesEverythingFromAllRound) {
+  const auto body = BoxCorners({5, 2, 0}, {25, 3, 1});
+  const auto still = FrameCamera(body, 1.5, CameraOptions{});
+  ASSERT_TRUE(still.ok());
+  const std::vector<Vec3> around = TurnedAround(body, *still, 36);
+  EXPECT_EQ(around.size(), 36 * body.size());
+  CameraOptions options;
+  options.up = still->ground_normal;
+  const auto camera = FrameCamera(around, 1.5, options);
+  ASSERT_TRUE(camera.ok()) << camera.status();
+  for (int step = 0; step < 72; ++step) {
+    const Camera turned = Turned(*camera, 2 * std::numbers::pi * step / 72);
+    EXPECT_NEAR(Dot(turned.forward, turned.ground_normal),
+                Dot(camera->forward, camera->ground_normal), 1e-12);
+    EXPECT_NEAR(Dot(turned.right, turned.forward), 0, 1e-12);
+    for (const Vec3& point : body) {
+      const auto [x, y] = Project(turned, point);
+      EXPECT_LE(std::max(std::abs(x), std::abs(y)), 0.86);
+    }
+  }
+  const Camera whole = Turned(*camera, 2 * std::numbers::pi);
+  EXPECT_NEAR(whole.position[0], camera->position[0], 1e-9);
+  EXPECT_NEAR(Turned(*camera, std::numbers::pi).position[0] - camera->scene_center[0],
+              camera->scene_center[0] - camera->position[0], 1e-9);
 }
 
 TEST(Camera, ALongBodyLiesAcrossThePictureWhicheverWayItPoints) {

@@ -142,6 +142,78 @@ TEST(Preview, StrainsPiecesAndThreadCountsGiveTheSameBytesEveryTime) {
   }
 }
 
+TEST(Preview, ATurntableGoesOnceRoundOneFrame) {
+  const TetMesh mesh = Bar();
+  const TurntableOptions turntable{.pictures = 6, .frames_per_second = 10, .tiles = 4};
+  int64_t calls = 0;
+  const auto bytes = RenderTurntable(mesh, BreakingBar(mesh), 19, turntable, Small(),
+                                     [&](int64_t done, int64_t total) {
+                                       EXPECT_EQ(done, ++calls);
+                                       EXPECT_EQ(total, 6);
+                                       return true;
+                                     });
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  const WebPData data{reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()};
+  WebPAnimDecoder* decoder = WebPAnimDecoderNew(&data, nullptr);
+  ASSERT_NE(decoder, nullptr);
+  WebPAnimInfo info;
+  WebPAnimDecoderGetInfo(decoder, &info);
+  EXPECT_EQ(info.frame_count, 6u);
+  int end = 0;
+  uint8_t* pixels = nullptr;
+  std::vector<std::vector<uint8_t>> pictures;
+  while (WebPAnimDecoderHasMoreFrames(decoder) != 0) {
+    ASSERT_NE(WebPAnimDecoderGetNext(decoder, &pixels, &end), 0);
+    pictures.emplace_back(pixels, pixels + 4 * info.canvas_width * info.canvas_height);
+  }
+  EXPECT_EQ(end, 600);
+  for (size_t i = 1; i < pictures.size(); ++i) EXPECT_NE(pictures[i], pictures[0]);
+  WebPAnimDecoderDelete(decoder);
+  const auto sheet = RenderTurntableSheet(mesh, BreakingBar(mesh), 19, turntable, Small(), nullptr);
+  ASSERT_TRUE(sheet.ok()) << sheet.status();
+  EXPECT_GE(sheet->width, 2 * 160);
+}
+
+TEST(Preview, ColoursTellDamageAndImpurity) {
+  const TetMesh mesh = Bar();
+  const FrameSource frames = BreakingBar(mesh);
+  PreviewOptions options = Small();
+  options.color_by = ColorBy::kDamage;
+  const auto whole = RenderStill(mesh, frames, 0, options);
+  const auto broken = RenderStill(mesh, frames, 19, options);
+  ASSERT_TRUE(whole.ok() && broken.ok()) << whole.status() << broken.status();
+  // Green of the middle of the map shows where edges broke alone; the legend's is in both.
+  const auto green = [](const Image& image) {
+    int count = 0;
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      count += image.rgb[i + 1] > image.rgb[i] + 30 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(green(*broken), green(*whole));
+
+  options.color_by = ColorBy::kImpurity;
+  EXPECT_THAT(std::string(RenderStill(mesh, frames, 0, options).status().message()),
+              HasSubstr("color_by: there are no impurities"));
+  options.node_potencies = {1, 2};
+  EXPECT_THAT(std::string(RenderStill(mesh, frames, 0, options).status().message()),
+              HasSubstr("node_potencies: has 2 items"));
+  options.node_potencies.clear();
+  for (const Vec3& rest : mesh.rest_positions) {
+    options.node_potencies.push_back(rest[0] > 0.2 ? 3 : 0);
+  }
+  const auto impure = RenderStill(mesh, frames, 0, options);
+  ASSERT_TRUE(impure.ok()) << impure.status();
+  int magenta = 0;
+  int yellow = 0;
+  for (size_t i = 0; i < impure->rgb.size(); i += 3) {
+    magenta += impure->rgb[i] > 100 && impure->rgb[i + 1] < 60 ? 1 : 0;
+    yellow += impure->rgb[i + 1] > 100 && impure->rgb[i + 2] < 90 ? 1 : 0;
+  }
+  EXPECT_GT(magenta, 100);
+  EXPECT_GT(yellow, 100);
+}
+
 TEST(Preview, BadInputIsAStatus) {
   const TetMesh mesh = Bar();
   const FrameSource frames = BreakingBar(mesh);
@@ -149,6 +221,12 @@ TEST(Preview, BadInputIsAStatus) {
   EXPECT_FALSE(RenderContactSheet(mesh, none, {}, Small(), nullptr).ok());
   EXPECT_FALSE(RenderAnimation(mesh, none, {}, Small(), nullptr).ok());
   EXPECT_FALSE(RenderStill(mesh, frames, 20, Small()).ok());
+  const auto turning = RenderTurntable(
+      mesh, frames, 0, {.pictures = 1, .frames_per_second = 0, .tiles = 1}, Small(), nullptr);
+  for (const char* field : {"pictures: 1", "tiles: 1", "frames_per_second: 0"}) {
+    EXPECT_THAT(std::string(turning.status().message()), HasSubstr(field));
+  }
+  EXPECT_FALSE(RenderTurntableSheet(mesh, frames, 20, {}, Small(), nullptr).ok());
   PreviewOptions options = Small();
   options.width = 3;
   options.samples = 100;
