@@ -11,6 +11,7 @@
 #include "tests/scenes/meat_loaf.h"
 #include "tests/scenes/slab_trio.h"
 #include "tests/scenes/steak.h"
+#include "tests/scenes/tube.h"
 
 namespace cleave {
 
@@ -73,6 +74,13 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakeColumn,
        MeasureColumn,
        ColumnCriteria()},
+      {"tube",
+       "A tube with a ring of impurities, ever more potent",
+       "Fig. 8",
+       {"1", "2", "3", "4", "5", "shuffled", "pure"},
+       MakeTube,
+       MeasureTube,
+       TubeCriteria()},
   };
   return kKinds;
 }
