@@ -53,6 +53,7 @@ int Main(int argc, char** argv) {
   AddInspect(app, program);
   AddExport(app, program);
   AddPreview(app, program);
+  AddGallery(app, program);
   AddInfo(app, program);
   if (NamesUnknownVerb(app, argc, argv)) return static_cast<int>(ExitCode::kUsage);
   try {

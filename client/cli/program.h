@@ -30,6 +30,7 @@ void AddImpurity(CLI::App& app, Program& program);
 void AddInfo(CLI::App& app, Program& program);
 void AddExport(CLI::App& app, Program& program);
 void AddPreview(CLI::App& app, Program& program);
+void AddGallery(CLI::App& app, Program& program);
 
 }  // namespace cleave
 

@@ -1,0 +1,102 @@
+#include "client/cli/gallery_runs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "client/cli/child_program.h"
+#include "client/io/series/write_aside.h"
+
+namespace cleave {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(GallerySeeds, AreNumbersAndRanges) {
+  EXPECT_THAT(*ParseSeeds("3"), ElementsAre(3));
+  EXPECT_THAT(*ParseSeeds("2-4,9"), ElementsAre(2, 3, 4, 9));
+}
+
+TEST(GallerySeeds, OfOtherTextAreRefused) {
+  for (const char* text : {"", "a", "3-1", "1-", "-1", "1,,2", "1-2-3", "99999999999"})
+    EXPECT_THAT(ParseSeeds(text).status().message(), HasSubstr("is not like 2-6")) << text;
+  EXPECT_EQ(ParseSeeds("2-4,3").status().message(), "--seeds: 3 is there twice");
+  EXPECT_EQ(ParseSeeds("0-4294967295").status().message(), "--seeds: more than 1000");
+}
+
+TEST(GalleryRuns, AreOfEveryVariantAndPicturedOnce) {
+  GalleryScene scene{"s", "t", "p", {"a", "b"}, {}, {"b"}};
+  const auto runs = RunsOf({scene}, {2, 3}, {"lattice", "unstructured"}, 1);
+  EXPECT_EQ(runs.size(), 8u);
+  int pictured = 0;
+  for (const GalleryRun& run : runs) {
+    pictured += run.pictured ? 1 : 0;
+    if (run.pictured) EXPECT_TRUE(run.variant == "b" && run.seed == 2 && run.layout == "lattice");
+  }
+  EXPECT_EQ(pictured, 1);
+}
+
+class GalleryFolderTest : public testing::Test {
+ protected:
+  GalleryFolderTest() {
+    std::string path = testing::TempDir() + "/gallery-XXXXXX";
+    path_ = mkdtemp(path.data());
+  }
+  ~GalleryFolderTest() override { std::filesystem::remove_all(path_); }
+
+  std::string path_;
+};
+
+TEST_F(GalleryFolderTest, KeepsRunsOfItsOwnBuildAndSettings) {
+  const GalleryFolder folder(path_, "build1", 800);
+  ASSERT_TRUE(folder.Make().ok());
+  GalleryRun run{"tube", "5", "lattice", 2, 1.5, false};
+  EXPECT_EQ(folder.Find(run), "");
+  ASSERT_TRUE(folder.Keep(run, "{\"a\":1}\n").ok());
+  EXPECT_EQ(folder.Find(run), "{\"a\":1}\n");
+  EXPECT_EQ(GalleryFolder(path_, "build2", 800).Find(run), "");
+  EXPECT_EQ(GalleryFolder(path_, "build1", 640).Find(run), "");
+  run.coarseness = 2;
+  EXPECT_EQ(folder.Find(run), "");
+  ASSERT_TRUE(folder.Clear().ok());
+  run.coarseness = 1.5;
+  EXPECT_EQ(folder.Find(run), "");
+}
+
+TEST_F(GalleryFolderTest, AsksForThePictureOfARunThatHasOne) {
+  const GalleryFolder folder(path_, "build1", 800);
+  ASSERT_TRUE(folder.Make().ok());
+  const GalleryRun run{"tube", "5", "lattice", 2, 1, true};
+  ASSERT_TRUE(folder.Keep(run, "{}\n").ok());
+  EXPECT_EQ(folder.Find(run), "");
+  ASSERT_TRUE(WriteAside(folder.PicturePath(run), "png").ok());
+  EXPECT_EQ(folder.Find(run), "{}\n");
+}
+
+TEST(ChildProgram, GivesWhatItPrintedOrWhyItFailed) {
+  auto child = ChildProgram::Start({"/bin/cat"}, "some text");
+  ASSERT_TRUE(child.ok()) << child.status();
+  EXPECT_EQ(*(*child)->Output(), "some text");
+  child = ChildProgram::Start({"/bin/sh", "-c", "echo wrong >&2; exit 3"});
+  ASSERT_TRUE(child.ok()) << child.status();
+  EXPECT_EQ((*child)->Output().status().message(), "wrong");
+  child = ChildProgram::Start({"/bin/sh", "-c", "exit 3"});
+  ASSERT_TRUE(child.ok()) << child.status();
+  EXPECT_EQ((*child)->Output().status().message(), "sh ended with exit code 3");
+}
+
+TEST(ChildProgram, EndsWhenItIsStopped) {
+  auto child = ChildProgram::Start({"/bin/sh", "-c", "exec sleep 1000"});
+  ASSERT_TRUE(child.ok()) << child.status();
+  EXPECT_FALSE((*child)->Ended());
+  (*child)->Stop();
+  EXPECT_TRUE((*child)->Ended());
+  EXPECT_THAT((*child)->Output().status().message(), HasSubstr("was ended by signal 9"));
+}
+
+}  // namespace
+}  // namespace cleave
