@@ -51,14 +51,25 @@ PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
 
 PieceLabels::Ranking PieceLabels::Rank(size_t place, std::span<const int32_t> labels) const {
   Ranking ranking{};
-  std::array<size_t, kStencilNodes> votes{};
   const std::array<int32_t, kStencilNodes>& stencil = stencils_[place];
-  for (size_t k = 0; k < kStencilNodes && stencil[k] >= 0; ++k) {
-    if (k > 0 && stencil[k] == stencil[0]) break;  // unused ones repeat the first
-    const int32_t label = labels[static_cast<size_t>(stencil[k])];
+  if (stencil[0] < 0) return ranking;
+  // Nearly everywhere all have the same label.
+  const int32_t label = labels[static_cast<size_t>(stencil[0])];
+  bool same = true;
+  for (const int32_t of_stencil : stencil) same &= labels[static_cast<size_t>(of_stencil)] == label;
+  if (same) {
+    ranking.labels[0] = label;
+    ranking.count = 1;
+    ranking.context = stencil[2] == stencil[0] ? 1 : 2;  // unused ones repeat the first
+    return ranking;
+  }
+  std::array<size_t, kStencilNodes> votes{};
+  for (size_t k = 0; k < kStencilNodes; ++k) {
+    if (k > 0 && stencil[k] == stencil[0]) break;
+    const int32_t other = labels[static_cast<size_t>(stencil[k])];
     size_t at = 0;
-    while (at < ranking.count && ranking.labels[at] != label) ++at;
-    if (at == ranking.count) ranking.labels[ranking.count++] = label;
+    while (at < ranking.count && ranking.labels[at] != other) ++at;
+    if (at == ranking.count) ranking.labels[ranking.count++] = other;
     ++votes[at];
   }
   for (size_t end = 1; end < ranking.count; ++end) {
@@ -67,11 +78,7 @@ PieceLabels::Ranking PieceLabels::Rank(size_t place, std::span<const int32_t> la
       std::swap(ranking.labels[at], ranking.labels[at - 1]);
     }
   }
-  if (ranking.count == 1) {
-    ranking.context = votes[0] < 3 ? 1 : 2;
-  } else if (ranking.count > 1) {
-    ranking.context = 7 - std::min<size_t>(votes[0] - votes[1], 4);
-  }
+  ranking.context = 7 - std::min<size_t>(votes[0] - votes[1], 4);
   return ranking;
 }
 

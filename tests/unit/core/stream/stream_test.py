@@ -14,6 +14,19 @@ GOLDEN = pathlib.Path(__file__).resolve().parent / "golden"
 TOLERANCES = [1e-3] * 12 + [1e-4]  # m, by frame
 
 
+def _make_right(frame):
+    """Lengths and checksums of a damaged frame, as far as they lead."""
+    struct.pack_into("<Q", frame, 8, len(frame))
+    struct.pack_into("<I", frame, 84, checksums.crc32c(bytes(frame[:84])))
+    at = 88
+    while at + 24 <= len(frame):
+        coded = min(struct.unpack_from("<I", frame, at + 8)[0], len(frame) - at - 24)
+        struct.pack_into("<I", frame, at + 8, coded)
+        covered = bytes(frame[at : at + 20] + frame[at + 24 : at + 24 + coded])
+        struct.pack_into("<I", frame, at + 20, checksums.crc32c(covered))
+        at += 24 + coded
+
+
 class GoldenTests:
     """What holds for each of the golden streams."""
 
@@ -89,6 +102,32 @@ class GoldenTests:
                     self.decoder.apply(bytes(forged))
             at += 24 + len(section.coded)
         self.assertEqual(self.decoder.apply(good), header)
+
+    def test_random_forgeries_of_every_frame_are_refused_or_right(self):
+        random = np.random.default_rng(7)
+        hashes = {row.state_hash for row in self.file.rows}
+        frames = [self.file.frame_bytes(row) for row in self.file.rows]
+        for position, good in enumerate(frames):
+            for _ in range(10):
+                forged = bytearray(good)
+                for _ in range(random.integers(1, 4)):
+                    other = frames[random.integers(len(frames))]
+                    at = int(random.integers(88, max(len(forged), 89)))
+                    start = int(random.integers(len(other)))
+                    size = int(random.integers(1, 20))
+                    forged[at : at + size] = (
+                        other[start : start + size] if random.integers(2) else random.bytes(size)
+                    )
+                _make_right(forged)
+                before = self.decoder.state_hash
+                try:
+                    self.decoder.apply(bytes(forged))
+                except stream.StreamError:
+                    self.assertEqual(self.decoder.state_hash, before)
+                else:
+                    self.assertIn(self.decoder.state_hash, hashes)
+                    self.file.seek(position - 1, self.decoder) if position else None
+            self.decoder.apply(good)
 
     def test_frames_in_a_wrong_place_and_other_meshes_are_refused(self):
         with self.assertRaises(stream.WrongStateError):
