@@ -9,7 +9,8 @@ namespace cleave {
 
 // A tapered branch with the stubs of two twigs, fibres along it, its foot pinned, its tip bent
 // aside and pulled. Variants: "dry"; "damp", with water, which degrades, on all nodes; "dry-iso"
-// and "damp-iso", without fibres.
+// and "damp-iso", without fibres; "dry-fall" and "damp-fall", of softer wood, whose tip is let go
+// when it is torn off and falls across the edge of a stone.
 absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
 
 // splinter_length: axial extent of a fracture over the diameter, the mean over fractures by area.

@@ -42,7 +42,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
       {"branch",
        "A branch, dry and damp",
        "Figs. 7 and 13",
-       {"dry", "damp", "dry-iso", "damp-iso"},
+       {"dry", "damp", "dry-iso", "damp-iso", "dry-fall", "damp-fall"},
        MakeBranch,
        MeasureBranch,
        BranchCriteria()},

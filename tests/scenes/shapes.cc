@@ -98,7 +98,8 @@ absl::StatusOr<TetMesh> Branch(const BranchShape& shape, const MeshResolution& r
     double angle;  // rad
   };
   constexpr Stub kStubs[] = {{0.62, 0.4}, {0.36, 2.7}};
-  const double width = 0.75 * shape.foot_radius;
+  // Narrower than a few cells they would fold it too.
+  const double width = std::max(0.75 * shape.foot_radius, 3 * resolution.cell_size);
   for (Vec3& p : mesh.rest_positions) {
     const double along = p[2] / shape.length;
     double scale = 1 + (shape.tip_radius / shape.foot_radius - 1) * along;
