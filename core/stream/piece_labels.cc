@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "core/base/bytes.h"
+#include "core/base/parallel.h"
 #include "core/stream/rans.h"
 #include "core/stream/residual_model.h"
 
@@ -90,16 +91,21 @@ std::string PieceLabels::Encode(std::span<const int32_t> labels) const {
   };
   std::vector<Choice> choices(count);
   std::array<std::array<uint64_t, kSymbols>, kContexts> counts{};
+  ParallelFor(static_cast<int64_t>(count), 4096, [&](int64_t begin, int64_t end) {
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      const Ranking ranking = Rank(at, labels);
+      uint32_t rank = 0;
+      while (rank < ranking.count && ranking.labels[rank] != labels[at]) ++rank;
+      choices[at] = {ranking.context, rank < ranking.count ? rank : kListed};
+    }
+  });
   int32_t labels_so_far = 0;
   for (size_t at = 0; at < count; ++at) {
-    const bool is_new = labels[at] == labels_so_far;
-    if (is_new) ++labels_so_far;
     Choice& choice = choices[at];
-    const Ranking ranking = Rank(at, labels);
-    choice.context = ranking.context;
-    uint32_t rank = 0;
-    while (rank < ranking.count && ranking.labels[rank] != labels[at]) ++rank;
-    choice.code = is_new ? kNew : rank < ranking.count ? rank : kListed;
+    if (labels[at] == labels_so_far) {
+      ++labels_so_far;
+      choice.code = kNew;
+    }
     ++counts[choice.context][std::min(choice.code, kElse)];
   }
   Frequencies frequencies;
@@ -179,12 +185,22 @@ absl::StatusOr<std::vector<int32_t>> PieceLabels::Decode(absl::string_view coded
 }
 
 std::vector<int32_t> PieceLabels::Between(std::span<const int32_t> labels) const {
-  std::vector<int32_t> between;
-  for (size_t edge = 0; edge < edges_.size(); ++edge) {
-    if (labels[static_cast<size_t>(edges_[edge][0])] !=
-        labels[static_cast<size_t>(edges_[edge][1])]) {
-      between.push_back(static_cast<int32_t>(edge));
+  constexpr int64_t kRun = 1 << 16;  // edges
+  const auto count = static_cast<int64_t>(edges_.size());
+  std::vector<std::vector<int32_t>> runs(static_cast<size_t>((count + kRun - 1) / kRun));
+  ParallelFor(static_cast<int64_t>(runs.size()), 1, [&](int64_t begin, int64_t end) {
+    for (int64_t run = begin; run < end; ++run) {
+      for (int64_t edge = run * kRun; edge < std::min(count, (run + 1) * kRun); ++edge) {
+        const auto& [a, b] = edges_[static_cast<size_t>(edge)];
+        if (labels[static_cast<size_t>(a)] != labels[static_cast<size_t>(b)]) {
+          runs[static_cast<size_t>(run)].push_back(static_cast<int32_t>(edge));
+        }
+      }
     }
+  });
+  std::vector<int32_t> between;
+  for (const std::vector<int32_t>& run : runs) {
+    between.insert(between.end(), run.begin(), run.end());
   }
   return between;
 }

@@ -15,7 +15,8 @@
 namespace cleave {
 
 // A set of broken edges as the piece of each node: FORMAT.md, "Labels". Much shorter than a list
-// where a body has come apart. What it does not say are edges that broke inside a piece.
+// where a body has come apart. What it does not say are edges that broke inside a piece. Loops run
+// on the current TBB arena.
 class PieceLabels {
  public:
   // `unbroken` are the stencils of a body of which no edge is broken.

@@ -51,14 +51,16 @@ void Pieces::Find(const NodeOrder& order, const EdgeGraph& graph) {
 }
 
 bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
-  std::vector<int32_t> touched;
+  std::vector<uint8_t> is_touched(blocks_.size(), 0);
   for (const int32_t edge : edges) {
     for (const int32_t place : graph.Ends(edge)) {
-      touched.push_back(ranks_[static_cast<size_t>(place)] / kBlock);
+      is_touched[static_cast<size_t>(ranks_[static_cast<size_t>(place)] / kBlock)] = 1;
     }
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::vector<int32_t> touched;
+  for (size_t block = 0; block < blocks_.size(); ++block) {
+    if (is_touched[block] != 0) touched.push_back(static_cast<int32_t>(block));
+  }
   const auto count = static_cast<int64_t>(touched.size());
   ParallelFor(count, kGrainBlocks, [&](int64_t begin, int64_t end) {
     for (int64_t at = begin; at < end; ++at) FindClumps(graph, touched[static_cast<size_t>(at)]);
