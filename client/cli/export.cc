@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
@@ -12,6 +13,7 @@
 #include "client/io/bake/bake.h"
 #include "client/io/export/export_series.h"
 #include "client/io/series/write_aside.h"
+#include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -28,6 +30,8 @@ struct Options {
   int64_t first = 0;
   int64_t last = std::numeric_limits<int64_t>::max();
   int64_t stride = 1;
+  std::string render_mesh;
+  double render_scale = 1;
   std::optional<double> rate;
   bool velocities = false;
 };
@@ -80,16 +84,44 @@ absl::Status ExportBake(Program& program, const Options& options, const Recorded
   return absl::OkStatus();
 }
 
+absl::StatusOr<RenderMesh> LoadRenderMesh(const Options& options) {
+  if (options.format != "vtu" && options.format != "ply" && options.format != "obj")
+    return absl::InvalidArgumentError(
+        absl::StrCat("--render-mesh goes with --format vtu, ply and obj, not ", options.format));
+  CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(options.render_mesh));
+  for (Vec3& point : surface.vertices) {
+    for (double& coordinate : point) coordinate *= options.render_scale;
+  }
+  RenderMesh render{std::move(surface.vertices), std::move(surface.triangles),
+                    std::move(surface.uvs)};
+  const absl::Status status = CheckRenderMesh(render);
+  if (!status.ok())
+    return absl::InvalidArgumentError(absl::StrCat(options.render_mesh, ": ", status.message()));
+  if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
+    PrintNote(absl::StrCat(options.render_mesh, " is not closed: ", open,
+                           " edges have no counterpart, and pieces will have holes there"));
+  return render;
+}
+
 absl::Status Export(Program& program, const Options& options) {
   if (options.format == "plot") return ExportPlot(options);
+  if (!options.render_mesh.empty() && BakeFormats().count(options.format) > 0)
+    return LoadRenderMesh(options).status();
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
                           SelectFrames(run.recording, options.first, options.last, options.stride));
   if (BakeFormats().count(options.format) > 0) return ExportBake(program, options, run, frames);
-  ExportOptions target{TargetFolder(options), options.name};
+  ExportOptions target;
+  target.folder = TargetFolder(options);
+  target.name = options.name;
   if (options.format != "obj") {
     CLEAVE_ASSIGN_OR_RETURN(target.node_potencies, RunPotencies(options.run, run.mesh));
+  }
+  RenderMesh render_mesh;
+  if (!options.render_mesh.empty()) {
+    CLEAVE_ASSIGN_OR_RETURN(render_mesh, LoadRenderMesh(options));
+    target.render_mesh = &render_mesh;
   }
   const Progress progress = ShowingProgress("exporting frames", program.interrupt);
   const auto result = options.format == "ply" ? WritePlySeries(run.mesh, frames, target, progress)
@@ -102,6 +134,9 @@ absl::Status Export(Program& program, const Options& options) {
   if (!result.ok()) return result.status();
   PrintResult(result->collection.empty() ? target.folder : result->collection);
   PrintNote(absl::StrCat(result->written, " files written, ", result->kept, " were there already"));
+  if (result->open_faces > 0)
+    PrintNote(absl::StrCat("the render mesh does not go round the body at ", result->open_faces,
+                           " faces; pieces may have holes where these break"));
   return absl::OkStatus();
 }
 
@@ -129,6 +164,17 @@ void AddExport(CLI::App& app, Program& program) {
                    "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
       ->type_name("MESH");
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("METRES");
+  verb->add_option(
+          "--render-mesh", options->render_mesh,
+          "For vtu, ply and obj: a fine triangle mesh (.obj, .ply, .stl) round the body at "
+          "rest, which is written in place of its surface; it follows and breaks with the "
+          "pieces")
+      ->type_name("FILE");
+  verb->add_option("--render-scale", options->render_scale,
+                   "Metres for one unit of the render mesh")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("METRES");

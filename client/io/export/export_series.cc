@@ -45,7 +45,10 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   grid.types.assign(surface.triangles.size(), kVtuTriangle);
   const std::vector<int32_t> pieces = PointPieces(surface);
   grid.point_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
-  grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
+  // Those of a render mesh have none that would last.
+  const bool has_ids = sequence.embedded() == nullptr;
+  if (has_ids)
+    grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
   grid.point_data.push_back(MakeVtuVectors("rest", surface.rest_points));
   grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
   grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
@@ -54,7 +57,8 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   if (!surface.potencies.empty()) {
     grid.point_data.push_back(MakeVtuArray<float>("potency", surface.potencies));
   }
-  grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
+  if (has_ids)
+    grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", surface.pieces));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("region", surface.regions));
   grid.cell_data.push_back(MakeVtuArray<uint8_t>("inside", surface.inside));
@@ -165,13 +169,28 @@ std::string PotencyName(const std::vector<double>& potencies) {
   return absl::StrCat(hash.Digest());
 }
 
+// What a render mesh adds to the name of a format.
+std::string RenderKey(const RenderMesh* mesh) {
+  if (mesh == nullptr) return "";
+  StateHash hash;
+  hash.Update(mesh->points.data(), mesh->points.size() * sizeof(Vec3));
+  hash.Update(mesh->triangles.data(), mesh->triangles.size() * sizeof(mesh->triangles[0]));
+  hash.Update(mesh->uvs.data(), mesh->uvs.size() * sizeof(CornerUvs));
+  return absl::StrCat(" render ", hash.Digest());
+}
+
+int64_t OpenFacesOf(const SurfaceSequence& sequence) {
+  return sequence.embedded() == nullptr ? 0 : sequence.embedded()->open_faces();
+}
+
 // What series carry beside positions, from options for the lot.
 SequenceOptions Carried(const ExportOptions& options) {
   return {.strains = true,
           .damages = true,
           .displacements = true,
           .velocities = true,
-          .node_potencies = options.node_potencies};
+          .node_potencies = options.node_potencies,
+          .render_mesh = options.render_mesh};
 }
 
 class SeriesWriter {
@@ -181,7 +200,8 @@ class SeriesWriter {
       : options_(options),
         nodes_(mesh.node_count()),
         ending_(ending),
-        key_(mesh, absl::StrCat(format, " ", PotencyName(options.node_potencies))) {}
+        key_(mesh, absl::StrCat(format, " ", PotencyName(options.node_potencies),
+                                RenderKey(options.render_mesh))) {}
 
   absl::Status Write(const FrameSource& frames, const Format& format, const Progress& progress) {
     if (frames.count <= 0) return absl::InvalidArgumentError("there are no frames to export");
@@ -217,7 +237,11 @@ class SeriesWriter {
     return WriteAside(result_.collection, bytes);
   }
 
-  const ExportResult& result() const { return result_; }
+  ExportResult result(int64_t open_faces) const {
+    ExportResult result = result_;
+    result.open_faces = open_faces;
+    return result;
+  }
 
  private:
   absl::Status CheckPotencies() const {
@@ -244,7 +268,9 @@ class SeriesWriter {
 absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSource& frames,
                                             VtuContent content, const ExportOptions& options,
                                             const Progress& progress) {
-  SurfaceSequence sequence(mesh, Carried(options));
+  SequenceOptions carried = Carried(options);
+  if (content == VtuContent::kVolume) carried.render_mesh = nullptr;
+  SurfaceSequence sequence(mesh, carried);
   std::optional<VolumeSequence> volume;
   if (content == VtuContent::kVolume) volume.emplace(mesh, sequence, options.node_potencies);
   Format format;
@@ -261,7 +287,7 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
   const absl::Status collected = writer.WriteCollection();
   CLEAVE_RETURN_IF_ERROR(written);
   CLEAVE_RETURN_IF_ERROR(collected);
-  return writer.result();
+  return writer.result(OpenFacesOf(sequence));
 }
 
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
@@ -275,13 +301,13 @@ absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSour
   };
   SeriesWriter writer(mesh, options, "ply", "ply");
   CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));
-  return writer.result();
+  return writer.result(OpenFacesOf(sequence));
 }
 
 absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSource& frames,
                                             const ExportOptions& options,
                                             const Progress& progress) {
-  SurfaceSequence sequence(mesh, {});
+  SurfaceSequence sequence(mesh, {.render_mesh = options.render_mesh});
   const SurfaceMaterials materials(mesh);
   const ObjOptions look{"", options.name, absl::StrCat(options.name, ".mtl"), true};
   Format format;
@@ -297,7 +323,7 @@ absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSour
                                         ? look.material_file
                                         : absl::StrCat(options.folder, "/", look.material_file),
                                     EncodeMtl(materials)));
-  return writer.result();
+  return writer.result(OpenFacesOf(sequence));
 }
 
 }  // namespace cleave

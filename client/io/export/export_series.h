@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -22,12 +23,15 @@ struct ExportOptions {
   std::string name = "cleave";  // files are NAME_000012.vtu, the collection NAME.pvd
   // Alpha of impurities, a finite number a node; empty: files carry none.
   std::vector<double> node_potencies = {};
+  // Written in place of the body's surface, where it is given (embedded_mesh.h); not with a volume.
+  const RenderMesh* render_mesh = nullptr;
 };
 
 struct ExportResult {
   int64_t written = 0;     // files
   int64_t kept = 0;        // files that stood already, made from the same data
   std::string collection;  // path of the .pvd; empty for PLY and OBJ
+  int64_t open_faces = 0;  // of a render mesh: EmbeddedMesh::open_faces
 };
 
 // Writes a file a frame and a ParaView collection of them.

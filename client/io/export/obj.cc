@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -78,9 +79,15 @@ class ObjText {
     const size_t axis = FacedAxis(rest(a), rest(b), rest(c));
     for (size_t k = 0; k < 3; ++k) {
       const int32_t point = surface_.triangles[triangle][k];
-      const auto [uv, new_uv] = uvs_.Of({point, static_cast<int32_t>(axis)});
+      const bool has_own = !surface_.uvs.empty() && surface_.inside[triangle] == 0;
+      const std::array<float, 2> own = has_own ? surface_.uvs[triangle][k] : std::array<float, 2>{};
+      const auto [uv, new_uv] =
+          uvs_.Of(has_own ? std::array{-1, std::bit_cast<int32_t>(own[0] + 0.0f),
+                                       std::bit_cast<int32_t>(own[1] + 0.0f)}
+                          : std::array{point, static_cast<int32_t>(axis), 0});
       if (new_uv) {
-        const auto [u, v] = RestUv(rest(point), axis);
+        const auto [u, v] =
+            has_own ? std::array<double, 2>{own[0], own[1]} : RestUv(rest(point), axis);
         out_ += "vt ";
         AppendNumber(static_cast<float>(u), out_);
         out_ += ' ';
@@ -126,7 +133,8 @@ class ObjText {
   const SurfaceMaterials& materials_;
   const ObjOptions& options_;
   std::vector<std::array<Eigen::Vector3f, 3>> normals_;
-  Numbered<std::array<int32_t, 2>> uvs_;         // of a point and the axis along which it is seen
+  // Of a point and the axis along which it is seen, or -1 and texture coordinates, bit by bit.
+  Numbered<std::array<int32_t, 3>> uvs_;
   Numbered<std::array<int32_t, 3>> directions_;  // ten thousandths
   std::vector<std::array<int64_t, 2>> corners_;  // in the order of the faces: uv, normal
   std::string out_;

@@ -21,7 +21,8 @@ struct ObjOptions {
 
 // The bytes of a Wavefront OBJ file: every point in its place as a `v` line (float precision, the
 // scene's axes, m), then faces by piece and material: "g piece_3", "usemtl inside_7". Texture
-// coordinates are RestUv of the rest points, which must be known. Precondition: `materials` knows
+// coordinates are the surface's own on outer faces, where it has any, else RestUv of the rest
+// points, which must be known. Precondition: `materials` knows
 // the surface's regions. Errors: InvalidArgument for what CheckShownSurface refuses, and for no
 // triangles. Source: Wavefront, "Object files (.obj)", version 3.0.
 absl::StatusOr<std::string> EncodeObj(const ShownSurface& surface,

@@ -47,6 +47,8 @@ absl::Status CheckShownSurface(const ShownSurface& surface) {
   CheckSize("pieces", surface.pieces.size(), triangles, false, faults);
   CheckSize("inside", surface.inside.size(), triangles, false, faults);
   CheckSize("regions", surface.regions.size(), triangles, false, faults);
+  CheckSize("uvs", surface.uvs.size(), triangles, true, faults);
+  CheckSize("sources", surface.sources.size(), triangles, true, faults);
   CheckSize("strains", surface.strains.size(), points, true, faults);
   CheckSize("damages", surface.damages.size(), points, true, faults);
   CheckSize("potencies", surface.potencies.size(), points, true, faults);

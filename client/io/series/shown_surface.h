@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "core/base/vec3.h"
+#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -24,6 +25,11 @@ struct ShownSurface {
   std::vector<int32_t> pieces;   // piece ids, the same in every frame for as long as a piece lives
   std::vector<uint8_t> inside;   // 1: opened by a crack; 0: the body's own surface
   std::vector<int32_t> regions;  // region of the element behind the triangle
+
+  // One a triangle, or empty where unknown.
+  std::vector<CornerUvs> uvs;  // texture coordinates; 0 inside, where rest points serve
+  // The face behind, 4 * tet + face of the boundary (or the triangle of a render mesh); -1 inside.
+  std::vector<int64_t> sources;
 
   // One a point, or empty where unknown.
   std::vector<float> strains;       // largest principal stretch minus 1

@@ -56,6 +56,8 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
       incidence_(BuildIncidence(mesh)),
       faces_(BuildFaces(mesh)),
       moved_(mesh_, incidence_) {
+  if (options_.render_mesh != nullptr)
+    embedded_.emplace(mesh_, incidence_, faces_, *options_.render_mesh);
   if (!options_.strains) return;
   rest_inverses_.resize(mesh.tets.size());
   rest_volumes_.resize(mesh.tets.size());
@@ -105,14 +107,26 @@ void SurfaceSequence::TakeApart(const Frame& frame) {
                       broken_edges_.end(), std::back_inserter(edges));
   broken_edges_ = frame.broken_edges;
   surface_->Break(edges);
-  pieces_->Break(edges);
+  const bool splits = !pieces_->Break(edges).empty();
   node_pieces_.resize(mesh_.rest_positions.size());
   for (size_t node = 0; node < node_pieces_.size(); ++node)
     node_pieces_[node] = pieces_->piece_of(static_cast<int32_t>(node));
-  const SurfaceTopology& topology = surface_->topology();
+  if (embedded_) {
+    if (splits || !goes_on) embedded_->Cut(*pieces_);
+    embedded_->SetMasks(surface_->topology().tet_masks);
+  }
+  Show();
+  if (options_.sources) FindSources();
+  if (options_.damages) FindDamages();
+  if (!options_.node_potencies.empty()) FindPotencies();
+}
+
+void SurfaceSequence::Show() {
+  const SurfaceTopology& topology = this->topology();
   const size_t triangles = topology.triangles.size();
   shown_.triangles = topology.triangles;
   shown_.inside = topology.inside;
+  if (embedded_) shown_.uvs = embedded_->uvs();
   shown_.pieces.resize(triangles);
   shown_.regions.resize(triangles);
   for (size_t i = 0; i < triangles; ++i) {
@@ -123,8 +137,16 @@ void SurfaceSequence::TakeApart(const Frame& frame) {
   for (size_t i = 0; i < topology.points.size(); ++i) {
     shown_.rest_points[i] = topology.points[i].rest;
   }
-  if (options_.damages) FindDamages();
-  if (!options_.node_potencies.empty()) FindPotencies();
+}
+
+void SurfaceSequence::FindSources() {
+  shown_.sources.assign(topology().triangles.size(), -1);
+  for (size_t i = 0; i < shown_.sources.size(); ++i) {
+    if (topology().inside[i] != 0) continue;
+    shown_.sources[i] = embedded_
+                            ? int64_t{embedded_->sources()[i]}
+                            : static_cast<int64_t>(surface_id::PartOf(topology().triangle_ids[i]));
+  }
 }
 
 std::vector<float> SurfaceSequence::TetStrains(const std::vector<Vec3>& positions) const {

@@ -12,6 +12,7 @@
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
+#include "core/surface/embedded_mesh.h"
 #include "core/surface/faces.h"
 #include "core/surface/visible_surface.h"
 
@@ -25,6 +26,9 @@ struct SequenceOptions {
   bool velocities = false;
   // Alpha of impurities, a node each; empty: the surface carries none. Precondition: finite.
   std::vector<double> node_potencies = {};
+  bool sources = false;  // of outer triangles
+  // Shown in place of the body's own surface, where it is given; CheckRenderMesh holds.
+  const RenderMesh* render_mesh = nullptr;
 };
 
 // Turns the frames of one run, given in order, into the surfaces to be seen. Only what is round
@@ -47,7 +51,11 @@ class SurfaceSequence {
   // before, 0 in the first.
   // Damages are means over all tets at the nodes on a point's side; potencies are interpolated.
   const ShownSurface& surface() const { return shown_; }
-  const SurfaceTopology& topology() const { return surface_->topology(); }
+  const SurfaceTopology& topology() const {
+    return embedded_ ? embedded_->topology() : surface_->topology();
+  }
+  // Where there is a render mesh: how it is bound to the body. Else null.
+  const EmbeddedMesh* embedded() const { return embedded_ ? &*embedded_ : nullptr; }
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
   int64_t piece_count() const { return pieces_->count(); }
   const Incidence& incidence() const { return incidence_; }
@@ -62,6 +70,9 @@ class SurfaceSequence {
 
  private:
   void TakeApart(const Frame& frame);
+  // Copies what the topology says into shown_.
+  void Show();
+  void FindSources();
   void FindDamages();
   void FindPotencies();
   void FindStrains(const std::vector<Vec3>& positions);
@@ -78,6 +89,7 @@ class SurfaceSequence {
   bool changed_ = false;
   std::vector<int32_t> broken_edges_;
   std::optional<VisibleSurface> surface_;
+  std::optional<EmbeddedMesh> embedded_;
   std::optional<NamedPieces> pieces_;
   std::vector<int32_t> node_pieces_;
   ShownSurface shown_;

@@ -75,8 +75,10 @@ absl::StatusOr<SurfaceMesh> ParseSurfaceFile(absl::string_view bytes, absl::stri
   }
   SurfaceMesh surface;
   Welder welder(surface);
+  bool has_uvs = true;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
+    has_uvs = has_uvs && mesh.HasTextureCoords(0);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3) continue;
@@ -89,9 +91,18 @@ absl::StatusOr<SurfaceMesh> ParseSurfaceFile(absl::string_view bytes, absl::stri
         triangle[k] = welder.VertexAt(place);
       }
       surface.triangles.push_back(triangle);
+      if (!has_uvs) continue;
+      auto& uvs = surface.uvs.emplace_back();
+      for (unsigned k = 0; k < 3; ++k) {
+        const aiVector3D& uv = mesh.mTextureCoords[0][face.mIndices[k]];
+        if (!IsFinite(uv))
+          return absl::InvalidArgumentError("has a texture coordinate that is not a finite number");
+        uvs[k] = {uv.x, uv.y};
+      }
     }
   }
   if (surface.triangles.empty()) return absl::InvalidArgumentError("has no triangle");
+  if (!has_uvs) surface.uvs.clear();
   return surface;
 }
 

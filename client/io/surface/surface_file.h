@@ -16,6 +16,8 @@ namespace cleave {
 struct SurfaceMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<int32_t, 3>> triangles;  // turning as in the file
+  // Texture coordinates of the corners, a triangle each; empty where a part of the file has none.
+  std::vector<std::array<std::array<float, 2>, 3>> uvs;
 };
 
 // Reads a surface from a .obj, .ply or .stl file, text or binary; all objects and groups of the

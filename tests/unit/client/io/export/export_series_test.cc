@@ -225,6 +225,33 @@ TEST_F(ExportSeriesTest, ObjSeriesWritesAFileAFrameAndTheirMaterials) {
   EXPECT_EQ(WriteObjSeries(mesh_, FlyingTip(mesh_), options_, nullptr)->kept, 5);
 }
 
+TEST_F(ExportSeriesTest, ARenderMeshIsWrittenWithItsTextureCoordinatesAndInsideFaces) {
+  const TetMesh mesh = TwoTets();
+  RenderMesh render;
+  render.points = mesh.rest_positions;
+  render.triangles = {{3, 2, 0}, {1, 3, 0}, {2, 1, 0}, {2, 3, 4}, {3, 1, 4}, {1, 2, 4}};
+  render.uvs.assign(6, CornerUvs{{{0.125f, 0.25f}, {0.125f, 0.25f}, {0.125f, 0.25f}}});
+  options_.render_mesh = &render;
+  const auto result = WriteObjSeries(mesh, FlyingTip(mesh), options_, {});
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->written, 5);
+  EXPECT_EQ(result->open_faces, 0);
+  const std::string whole = ReadWhole("run_000000.obj");
+  EXPECT_THAT(whole, HasSubstr("vt 0.125 0.25\n"));
+  EXPECT_EQ(whole.find("vt ", whole.find("vt ") + 1), std::string::npos);  // one for all corners
+  EXPECT_EQ(whole.find("usemtl inside"), std::string::npos);
+  const std::string apart = ReadWhole("run_000004.obj");
+  EXPECT_THAT(apart, HasSubstr("g piece_1"));
+  EXPECT_THAT(apart, HasSubstr("usemtl inside"));
+  // Another render mesh is another export; none too.
+  EXPECT_EQ(WriteObjSeries(mesh, FlyingTip(mesh), options_, {})->kept, 5);
+  render.points[0][2] -= 0.01;
+  EXPECT_EQ(WriteObjSeries(mesh, FlyingTip(mesh), options_, {})->written, 5);
+  const auto vtu = WriteVtuSeries(mesh, FlyingTip(mesh), VtuContent::kSurface, options_, {});
+  ASSERT_TRUE(vtu.ok()) << vtu.status();
+  EXPECT_EQ(vtu->written, 5);
+}
+
 TEST_F(ExportSeriesTest, BadFramesAreAStatusAndWhatWasWrittenStays) {
   FrameSource none;
   EXPECT_EQ(WriteVtuSeries(mesh_, none, VtuContent::kSurface, options_, nullptr).status().code(),

@@ -89,6 +89,56 @@ TEST(SurfaceSequence, APieceKeepsItsIdInItsLargerPart) {
   EXPECT_THAT(sequence.surface().inside, Each(0));
 }
 
+TEST(SurfaceSequence, TellsTheFaceBehindOuterTrianglesWhereAsked) {
+  const TetMesh mesh = TwoTets();
+  Frame frame = AtRest(mesh);
+  frame.broken_edges = EdgesAtTip(mesh);
+  SurfaceSequence plain(mesh, {});
+  ASSERT_TRUE(plain.Advance(frame).ok());
+  EXPECT_TRUE(plain.surface().sources.empty());
+  EXPECT_TRUE(plain.surface().uvs.empty());
+  SurfaceSequence full(mesh, {.sources = true});
+  ASSERT_TRUE(full.Advance(frame).ok());
+  const ShownSurface& surface = full.surface();
+  ASSERT_TRUE(CheckShownSurface(surface).ok());
+  std::set<int64_t> sources;
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    EXPECT_EQ(surface.sources[i] < 0, surface.inside[i] != 0);
+    if (surface.sources[i] >= 0) sources.insert(surface.sources[i]);
+  }
+  EXPECT_EQ(sources.size(), 6u);  // faces of the body
+}
+
+TEST(SurfaceSequence, ARenderMeshStandsForTheSurfaceAndBreaksWithThePieces) {
+  const TetMesh mesh = TwoTets();
+  RenderMesh render;  // the body's own six faces
+  render.points = mesh.rest_positions;
+  render.triangles = {{3, 2, 0}, {1, 3, 0}, {2, 1, 0}, {2, 3, 4}, {3, 1, 4}, {1, 2, 4}};
+  render.uvs.assign(6, CornerUvs{{{0, 0}, {1, 0}, {0, 1}}});
+  ASSERT_EQ(CountOpenEdges(render.triangles), 0);
+  SurfaceSequence sequence(mesh, {.velocities = true, .sources = true, .render_mesh = &render});
+  Frame frame = AtRest(mesh);
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  EXPECT_THAT(sequence.surface().inside, Each(0));
+  EXPECT_EQ(sequence.embedded()->open_faces(), 0);
+  frame.time = 1;
+  frame.broken_edges = EdgesAtTip(mesh);
+  frame.positions[4][2] += 2;
+  ASSERT_TRUE(sequence.Advance(frame).ok());
+  const ShownSurface& surface = sequence.surface();
+  ASSERT_TRUE(CheckShownSurface(surface).ok());
+  EXPECT_EQ(CountOpenEdges(surface.triangles), 0);
+  EXPECT_THAT(surface.inside, ::testing::Contains(1));
+  EXPECT_EQ(surface.uvs.size(), surface.triangles.size());
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (const int32_t point : surface.triangles[i]) {
+      const auto p = static_cast<size_t>(point);
+      EXPECT_EQ(surface.points[p][2] > 1.2, surface.pieces[i] == 1);
+      EXPECT_NEAR(surface.velocities[p][2], surface.pieces[i] == 1 ? 2 : 0, 1e-9);
+    }
+  }
+}
+
 TEST(SurfaceSequence, VelocityAndDisplacementFollowARigidMotionAlsoWhereEdgesBreak) {
   const TetMesh mesh = TwoTets();
   SurfaceSequence sequence(mesh, {.displacements = true, .velocities = true});

@@ -55,6 +55,35 @@ constexpr float kTetrahedron[4][3][3] = {{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
                                          {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                          {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
 
+TEST(SurfaceFile, HasTextureCoordinatesWhereAllOfItsPartsDo) {
+  constexpr char kTextured[] = R"(v 0 0 0
+v 1 0 0
+v 0 1 0
+v 0 0 1
+vt 0 0
+vt 0.5 0
+vt 0 0.25
+vt 1 1
+f 1/1 3/2 2/3
+f 1/1 2/4 4/3
+)";
+  const auto textured = ParseSurfaceFile(kTextured, "a.obj");
+  ASSERT_TRUE(textured.ok()) << textured.status();
+  ASSERT_EQ(textured->uvs.size(), 2u);
+  EXPECT_EQ(textured->vertices.size(), 4u);  // a place with two coordinates is one vertex
+  for (size_t i = 0; i < 2; ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      const int32_t vertex = textured->triangles[i][k];
+      const Vec3& at = textured->vertices[static_cast<size_t>(vertex)];
+      if (at == Vec3{1, 0, 0})
+        EXPECT_EQ(textured->uvs[i][k],
+                  (std::array<float, 2>{i == 0 ? 0.0f : 1.0f, i == 0 ? 0.25f : 1.0f}));
+      if (at == Vec3{0, 1, 0}) EXPECT_EQ(textured->uvs[i][k], (std::array<float, 2>{0.5f, 0}));
+    }
+  }
+  EXPECT_TRUE(ParseSurfaceFile(kObj, "a.obj")->uvs.empty());  // its sides have none
+}
+
 std::string BinaryStl() {
   std::string bytes(80, '\0');
   const uint32_t count = 4;

@@ -1,0 +1,264 @@
+#include "core/surface/embedded_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/surface/point_motion.h"
+#include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/surface/surface_checks.h"
+
+namespace cleave {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// The boundary of a box of finer cells, its points moved by `place`.
+template <typename Place>
+RenderMesh FineBox(std::array<int, 3> cells, const Vec3& size, const Place& place) {
+  const SurfaceCase box(KuhnBox(cells, size));
+  const SurfaceTopology surface = ExtractSurface(box.mesh, box.incidence, box.faces, {}, {});
+  RenderMesh render;
+  for (const SurfacePoint& point : surface.points) render.points.push_back(place(point.rest));
+  render.triangles = surface.triangles;
+  for (const auto& triangle : render.triangles) {
+    CornerUvs uvs{};
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3& at = surface.points[static_cast<size_t>(triangle[k])].rest;
+      uvs[k] = {static_cast<float>(at[0]), static_cast<float>(at[1])};
+    }
+    render.uvs.push_back(uvs);
+  }
+  return render;
+}
+
+double VolumeOf(const std::vector<std::array<int32_t, 3>>& triangles,
+                const std::vector<Vec3>& points) {
+  double volume = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const Vector3d p(points[static_cast<size_t>(a)].data());
+    const Vector3d q(points[static_cast<size_t>(b)].data());
+    const Vector3d r(points[static_cast<size_t>(c)].data());
+    volume += p.dot(q.cross(r)) / 6;
+  }
+  return volume;
+}
+
+class EmbeddedMeshTest : public ::testing::Test {
+ protected:
+  // Edges between nodes that are nearest to different ones of some random places.
+  std::vector<int32_t> Shatter(uint64_t seed, uint64_t count) const {
+    std::vector<uint64_t> nearest;
+    for (const Vec3& at : box_.mesh.rest_positions) {
+      uint64_t best = 0;
+      double least = 1e9;
+      for (uint64_t k = 0; k < count; ++k) {
+        double distance = 0;
+        for (size_t axis = 0; axis < 3; ++axis) {
+          const double place = kSize[axis] * UniformDraw(seed, RandomStream::kMeshJitter, k, axis);
+          distance += (at[axis] - place) * (at[axis] - place);
+        }
+        if (distance < least) best = k;
+        least = std::min(least, distance);
+      }
+      nearest.push_back(best);
+    }
+    std::vector<int32_t> edges;
+    for (int32_t edge = 0; edge < static_cast<int32_t>(box_.incidence.edge_count()); ++edge) {
+      const auto [a, b] = box_.incidence.edges[static_cast<size_t>(edge)];
+      if (nearest[static_cast<size_t>(a)] != nearest[static_cast<size_t>(b)]) edges.push_back(edge);
+    }
+    return edges;
+  }
+
+  // Closed pieces that share no points and add up to the render mesh.
+  void ExpectSound(EmbeddedMesh& embedded, const NamedPieces& pieces) {
+    embedded.Cut(pieces);
+    const SurfaceTopology& surface = embedded.topology();
+    EXPECT_EQ(embedded.open_faces(), 0);
+    EXPECT_EQ(CountOpenEdges(surface.triangles), 0);
+    ASSERT_EQ(surface.triangles.size(), embedded.uvs().size());
+    std::map<int32_t, int32_t> piece_of_point;
+    for (size_t i = 0; i < surface.triangles.size(); ++i) {
+      const int32_t piece = pieces.piece_of(surface.nodes[i]);
+      for (const int32_t point : surface.triangles[i]) {
+        ASSERT_EQ(piece_of_point.emplace(point, piece).first->second, piece);
+        ASSERT_NE(surface.points[static_cast<size_t>(point)].owners, 0);
+      }
+      ASSERT_EQ(surface.inside[i] != 0, embedded.sources()[i] < 0);
+    }
+    ASSERT_EQ(piece_of_point.size(), surface.points.size());
+    std::vector<Vec3> points;
+    for (const SurfacePoint& point : surface.points) points.push_back(point.rest);
+    const double whole = VolumeOf(embedded.divided().triangles, embedded.divided().points);
+    EXPECT_NEAR(VolumeOf(surface.triangles, points), whole, 1e-12 * whole);
+  }
+
+  static constexpr Vec3 kSize{2, 1.2, 1};
+  const SurfaceCase box_{KuhnBox({6, 4, 3}, kSize)};
+};
+
+TEST_F(EmbeddedMeshTest, WholeIsTheMeshThatWasGiven) {
+  const RenderMesh render = FineBox({12, 9, 8}, kSize, [](const Vec3& at) { return at; });
+  ASSERT_TRUE(CheckRenderMesh(render).ok());
+  EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
+  const NamedPieces pieces(box_.mesh, box_.incidence);
+  ExpectSound(embedded, pieces);
+  EXPECT_EQ(embedded.topology().triangles.size(), embedded.divided().triangles.size());
+  for (size_t i = 0; i < embedded.sources().size(); ++i) {
+    const auto source = static_cast<size_t>(embedded.sources()[i]);
+    // Texture coordinates are those of the triangle behind, wherever it was divided.
+    for (size_t k = 0; k < 3; ++k) {
+      const auto point = static_cast<size_t>(embedded.topology().triangles[i][k]);
+      EXPECT_NEAR(embedded.uvs()[i][k][0], embedded.topology().points[point].rest[0], 1e-6);
+    }
+    ASSERT_LT(source, render.triangles.size());
+  }
+}
+
+TEST_F(EmbeddedMeshTest, BreaksWithThePiecesIntoClosedParts) {
+  const auto as_it_is = [](const Vec3& at) { return at; };
+  const auto scaled = [](double scale) {
+    return [scale](const Vec3& at) {
+      Vec3 moved{};
+      for (size_t axis = 0; axis < 3; ++axis)
+        moved[axis] = 0.5 * kSize[axis] + scale * (at[axis] - 0.5 * kSize[axis]);
+      return moved;
+    };
+  };
+  const auto wavy = [](const Vec3& at) {
+    return Vec3{at[0] + 0.03 * std::sin(9 * at[1]), at[1] + 0.03 * std::sin(8 * at[2] + 1),
+                at[2] + 0.03 * std::sin(7 * at[0] + 2)};
+  };
+  std::vector<RenderMesh> meshes;
+  meshes.push_back(FineBox({12, 9, 8}, kSize, as_it_is));
+  meshes.push_back(FineBox({11, 10, 9}, kSize, scaled(1.08)));
+  meshes.push_back(FineBox({13, 9, 8}, kSize, scaled(0.9)));
+  meshes.push_back(FineBox({12, 11, 10}, kSize, wavy));
+  meshes.push_back(FineBox({1, 1, 1}, kSize, scaled(1.03)));  // twelve triangles
+  for (size_t m = 0; m < meshes.size(); ++m) {
+    EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, meshes[m]);
+    for (uint64_t seed = 0; seed < 6; ++seed) {
+      SCOPED_TRACE(std::to_string(m) + " " + std::to_string(seed));
+      NamedPieces pieces(box_.mesh, box_.incidence);
+      pieces.Break(Shatter(seed, 2 + 3 * seed));
+      ASSERT_GT(pieces.count(), 1);
+      ASSERT_NO_FATAL_FAILURE(ExpectSound(embedded, pieces));
+    }
+    // Every node a piece.
+    NamedPieces crumbs(box_.mesh, box_.incidence);
+    std::vector<int32_t> all(box_.incidence.edges.size());
+    std::iota(all.begin(), all.end(), 0);
+    crumbs.Break(all);
+    ASSERT_NO_FATAL_FAILURE(ExpectSound(embedded, crumbs));
+  }
+}
+
+TEST_F(EmbeddedMeshTest, PiecesHaveTheVolumesOfTheirCornerCells) {
+  // The render mesh is the body's own boundary, cut along the plane between two layers of nodes.
+  const RenderMesh render = FineBox({12, 12, 12}, kSize, [](const Vec3& at) { return at; });
+  EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
+  NamedPieces pieces(box_.mesh, box_.incidence);
+  std::vector<int32_t> cut;
+  for (int32_t edge = 0; edge < static_cast<int32_t>(box_.incidence.edge_count()); ++edge) {
+    const auto [a, b] = box_.incidence.edges[static_cast<size_t>(edge)];
+    if ((box_.mesh.rest_positions[static_cast<size_t>(a)][0] < 0.9) !=
+        (box_.mesh.rest_positions[static_cast<size_t>(b)][0] < 0.9))
+      cut.push_back(edge);
+  }
+  pieces.Break(cut);
+  ASSERT_EQ(pieces.count(), 2);
+  embedded.Cut(pieces);
+  std::array<double, 2> volumes{};
+  for (size_t i = 0; i < embedded.topology().triangles.size(); ++i) {
+    std::array<Vector3d, 3> corners;
+    for (size_t k = 0; k < 3; ++k) {
+      const auto point = static_cast<size_t>(embedded.topology().triangles[i][k]);
+      corners[k] = Vector3d(embedded.topology().points[point].rest.data());
+    }
+    volumes[static_cast<size_t>(pieces.piece_of(embedded.topology().nodes[i]))] +=
+        corners[0].dot(corners[1].cross(corners[2])) / 6;
+  }
+  for (size_t piece = 0; piece < 2; ++piece)
+    EXPECT_NEAR(volumes[piece], pieces.volume(static_cast<int32_t>(piece)), 0.02 * 2.4);
+}
+
+TEST_F(EmbeddedMeshTest, FollowsRigidMotionsOfEachPieceExactly) {
+  EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces,
+                        FineBox({11, 9, 8}, kSize, [](const Vec3& at) {
+                          return Vec3{1.05 * at[0], 1.05 * at[1], 1.05 * at[2]};
+                        }));
+  const std::vector<int32_t> broken = Shatter(3, 4);
+  NamedPieces pieces(box_.mesh, box_.incidence);
+  pieces.Break(broken);
+  embedded.Cut(pieces);
+  embedded.SetMasks(TetEdgeMasks(box_.incidence, broken));
+  const auto turned = [&](const Vec3& at, int32_t piece) {
+    const Matrix3d rotation =
+        Eigen::AngleAxisd(0.4 + piece, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    Vec3 moved{};
+    Eigen::Map<Vector3d>(moved.data()) =
+        rotation * Vector3d(at.data()) + Vector3d(piece, -2.0 * piece, 1);
+    return moved;
+  };
+  std::vector<Vec3> positions = box_.mesh.rest_positions;
+  for (size_t node = 0; node < positions.size(); ++node)
+    positions[node] = turned(positions[node], pieces.piece_of(static_cast<int32_t>(node)));
+  std::vector<Vec3> points;
+  PointMotion(box_.mesh, box_.incidence).Move(embedded.topology(), positions, points);
+  // A piece whose nodes have all lost their live tets does not know that it turns.
+  std::vector<uint8_t> live(static_cast<size_t>(pieces.count()), 0);
+  for (size_t tet = 0; tet < box_.mesh.tets.size(); ++tet) {
+    if (Separated(embedded.topology().tet_masks[tet])) continue;
+    live[static_cast<size_t>(pieces.piece_of(box_.mesh.tets[tet][0]))] = 1;
+  }
+  size_t checked = 0;
+  for (size_t i = 0; i < embedded.topology().triangles.size(); ++i) {
+    const int32_t node = embedded.topology().nodes[i];
+    const int32_t piece = pieces.piece_of(node);
+    if (live[static_cast<size_t>(piece)] == 0) continue;
+    for (const int32_t point : embedded.topology().triangles[i]) {
+      const SurfacePoint& at = embedded.topology().points[static_cast<size_t>(point)];
+      bool owners_live = true;
+      for (size_t k = 0; k < at.node_count; ++k) {
+        if ((at.owners >> k & 1) == 0) continue;
+        bool has = false;
+        for (const int32_t tet : box_.incidence.node_tets[at.nodes[k]])
+          has = has || !Separated(embedded.topology().tet_masks[static_cast<size_t>(tet)]);
+        owners_live = owners_live && has;
+      }
+      if (!owners_live) continue;
+      const Vec3 expected = turned(at.rest, piece);
+      for (size_t axis = 0; axis < 3; ++axis)
+        ASSERT_NEAR(points[static_cast<size_t>(point)][axis], expected[axis], 1e-12);
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 1000u);
+}
+
+TEST(RenderMesh, FaultsAreNamedAndOpenEdgesCounted) {
+  RenderMesh mesh;
+  EXPECT_FALSE(CheckRenderMesh(mesh).ok());
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(CheckRenderMesh(mesh).ok());
+  EXPECT_EQ(CountOpenEdges(mesh.triangles), 3);
+  mesh.triangles.push_back({2, 1, 0});
+  EXPECT_EQ(CountOpenEdges(mesh.triangles), 0);
+  mesh.triangles.push_back({0, 1, 3});
+  EXPECT_EQ(CheckRenderMesh(mesh).message(), "triangles[2]: point 3 is outside [0, 3)");
+  mesh.triangles.pop_back();
+  mesh.uvs.resize(1);
+  EXPECT_EQ(CheckRenderMesh(mesh).message(), "uvs: has 1 items, not 2");
+  mesh.uvs.clear();
+  mesh.points[1][2] = std::nan("");
+  EXPECT_EQ(CheckRenderMesh(mesh).message(), "points[1]: is not finite");
+}
+
+}  // namespace
+}  // namespace cleave
