@@ -9,8 +9,10 @@
 #include "tests/scenes/fibre_bar.h"
 #include "tests/scenes/locality.h"
 #include "tests/scenes/meat_loaf.h"
+#include "tests/scenes/pizza.h"
 #include "tests/scenes/slab_trio.h"
 #include "tests/scenes/steak.h"
+#include "tests/scenes/struck_column.h"
 #include "tests/scenes/tube.h"
 
 namespace cleave {
@@ -81,6 +83,20 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakeTube,
        MeasureTube,
        TubeCriteria()},
+      {"struck_column",
+       "A porcelain column, struck by a steel ball",
+       "Fig. 9",
+       {"sheet", "voronoi", "plain"},
+       MakeStruckColumn,
+       MeasureStruckColumn,
+       StruckColumnCriteria()},
+      {"pizza",
+       "A pizza, a slice pulled out",
+       "Figs. 1 and 6",
+       {"cut", "uncut"},
+       MakePizza,
+       MeasurePizza,
+       PizzaCriteria()},
   };
   return kKinds;
 }

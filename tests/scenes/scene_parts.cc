@@ -1,10 +1,13 @@
 #include "tests/scenes/scene_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "core/base/counter_rng.h"
+#include "core/impurity/bake.h"
+#include "core/mesh/incidence.h"
 
 namespace cleave {
 
@@ -95,6 +98,16 @@ std::vector<uint8_t> Shuffled(std::vector<uint8_t> flags, uint32_t seed) {
 
 std::vector<double> MapOf(const std::vector<uint8_t>& flags) {
   return {flags.begin(), flags.end()};
+}
+
+std::vector<uint8_t> ImpureNodes(const Scene& scene, const TetMesh& mesh) {
+  const std::vector<double> potencies =
+      BakeImpurities(scene, mesh, BuildIncidence(mesh).edges).potencies;
+  const double largest = *std::max_element(potencies.begin(), potencies.end());
+  std::vector<uint8_t> flags;
+  for (const double potency : potencies)
+    flags.push_back(largest > 0 && potency >= largest / 2 ? 1 : 0);
+  return flags;
 }
 
 Vec3 InPlane(double degrees) {

@@ -51,6 +51,10 @@ std::vector<uint8_t> Shuffled(std::vector<uint8_t> flags, uint32_t seed);
 // Such flags as a potency map.
 std::vector<double> MapOf(const std::vector<uint8_t>& flags);
 
+// Nodes that the scene's impurities give at least half of the largest potency. Precondition: the
+// scene has impurities that fit the mesh.
+std::vector<uint8_t> ImpureNodes(const Scene& scene, const TetMesh& mesh);
+
 // Unit vector in the x-y plane, `degrees` from x towards y.
 Vec3 InPlane(double degrees);
 
