@@ -11,10 +11,9 @@
 #include "absl/strings/string_view.h"
 #include "client/io/export/obj.h"
 #include "client/io/export/ply.h"
-#include "client/io/export/volume_cells.h"
+#include "client/io/export/volume_sequence.h"
 #include "client/io/export/vtu.h"
 #include "client/io/series/data_key.h"
-#include "client/io/series/moved_points.h"
 #include "client/io/series/surface_sequence.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/state_hash.h"
@@ -65,95 +64,6 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", sequence.topology().tets));
   return grid;
 }
-
-// The volume's cells and where their points are, kept from frame to frame.
-class VolumeSequence {
- public:
-  VolumeSequence(const TetMesh& mesh, const SurfaceSequence& sequence,
-                 const std::vector<double>& node_potencies)
-      : mesh_(mesh),
-        sequence_(sequence),
-        node_potencies_(node_potencies),
-        moved_(mesh, sequence.incidence()) {}
-
-  // Call after every Advance of the sequence.
-  void Advance(const Frame& frame) {
-    const bool changed = sequence_.changed();
-    if (changed) cells_ = BuildVolumeCells(mesh_, sequence_.topology().tet_masks);
-    moved_.Advance(cells_.topology, changed, frame.positions, frame.time, true);
-  }
-
-  VtuGrid Grid(const Frame& frame) const {
-    VtuGrid grid;
-    grid.time = frame.time;
-    grid.points = moved_.points();
-    grid.connectivity = cells_.connectivity;
-    grid.offsets = cells_.offsets;
-    grid.types = cells_.types;
-    AddData(frame, grid);
-    return grid;
-  }
-
- private:
-  void AddData(const Frame& frame, VtuGrid& grid) const {
-    const std::vector<float> tet_strains = sequence_.TetStrains(frame.positions);
-    const std::vector<float> tet_damages = sequence_.TetDamages();
-    std::vector<int32_t> point_pieces;
-    for (const int32_t node : cells_.point_nodes) point_pieces.push_back(Piece(node));
-    std::vector<int32_t> pieces;
-    std::vector<int32_t> regions;
-    std::vector<float> strains;
-    std::vector<float> damages;
-    std::vector<uint8_t> broken;
-    std::vector<uint8_t> separated;
-    for (size_t cell = 0; cell < cells_.types.size(); ++cell) {
-      const auto tet = static_cast<size_t>(cells_.cell_tets[cell]);
-      const EdgeMask mask = cells_.topology.tet_masks[tet];
-      pieces.push_back(Piece(cells_.cell_nodes[cell]));
-      regions.push_back(mesh_.region_of(cells_.cell_tets[cell]));
-      // A separated tet spans a gap, which is no strain.
-      strains.push_back(Separated(mask) ? 0.0f : tet_strains[tet]);
-      damages.push_back(tet_damages[tet]);
-      broken.push_back(static_cast<uint8_t>(__builtin_popcount(mask)));
-      separated.push_back(Separated(mask) ? 1 : 0);
-    }
-    grid.point_data.push_back(MakeVtuArray<int32_t>("piece", point_pieces));
-    const std::vector<Vec3> displacements = Displacements(cells_.topology, grid.points);
-    std::vector<Vec3> rest_points;
-    for (const SurfacePoint& point : cells_.topology.points) rest_points.push_back(point.rest);
-    grid.point_data.push_back(MakeVtuVectors("rest", rest_points));
-    grid.point_data.push_back(MakeVtuVectors("displacement", displacements));
-    grid.point_data.push_back(MakeVtuVectors("velocity", moved_.velocities()));
-    if (!node_potencies_.empty()) {
-      grid.point_data.push_back(MakeVtuArray<float>("potency", PointPotencies()));
-    }
-    grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
-    grid.cell_data.push_back(MakeVtuArray<int32_t>("region", regions));
-    grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", cells_.cell_tets));
-    grid.cell_data.push_back(MakeVtuArray<float>("strain", strains));
-    grid.cell_data.push_back(MakeVtuArray<float>("damage", damages));
-    grid.cell_data.push_back(MakeVtuArray<uint8_t>("broken_edges", broken));
-    grid.cell_data.push_back(MakeVtuArray<uint8_t>("separated", separated));
-  }
-  std::vector<float> PointPotencies() const {
-    std::vector<float> potencies;
-    for (const SurfacePoint& point : cells_.topology.points) {
-      double mean = 0;
-      for (size_t k = 0; k < point.node_count; ++k) {
-        mean += point.weights[k] * node_potencies_[static_cast<size_t>(point.nodes[k])];
-      }
-      potencies.push_back(static_cast<float>(mean));
-    }
-    return potencies;
-  }
-  int32_t Piece(int32_t node) const { return sequence_.node_pieces()[static_cast<size_t>(node)]; }
-
-  const TetMesh& mesh_;
-  const SurfaceSequence& sequence_;
-  const std::vector<double>& node_potencies_;
-  MovedPoints moved_;
-  VolumeCells cells_;
-};
 
 // How a format goes on to a frame, and what it makes of it.
 struct Format {
