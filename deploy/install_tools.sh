@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the programs that the test lane "tools" opens exported files with: Blender, VTK's readers, the
-# Khronos glTF validator and three.js. They are called as programs, and nothing of Cleave links them.
+# Khronos glTF validator, three.js and tinyusdz. They are called as programs, and nothing of Cleave links them.
 # About 0.8 GB. Usage: deploy/install_tools.sh [FOLDER for the packages of npm, default build/tools]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,4 +26,5 @@ if [ ${#missing[@]} -gt 0 ]; then
     apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
 mkdir -p "$folder"
-npm install --silent --no-fund --no-audit --prefix "$folder" gltf-validator@2.0.0-dev.3.10 three@0.187.0
+npm install --silent --no-fund --no-audit --prefix "$folder" gltf-validator@2.0.0-dev.3.10 three@0.187.0 \
+  tinyusdz@0.9.0-rc10

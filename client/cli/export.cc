@@ -152,7 +152,7 @@ void AddExport(CLI::App& app, Program& program) {
           "--format", options->format,
           "vtu: surfaces with cracks, for ParaView; vtu-volume: all tets; ply, obj: surfaces; "
           "bake-pc2, bake-mdd: one OBJ of the pieces and a cache of its points, for Blender; "
-          "glb: the same as animated glTF; usda: as USD text (not yet opened by a USD "
+          "glb: the same as animated glTF; usda: as USD text (not yet played by a USD "
           "program); plot: force and broken edges over time as SVG")
       ->check(CLI::IsMember(
           {"vtu", "vtu-volume", "ply", "obj", "bake-pc2", "bake-mdd", "glb", "usda", "plot"}))
