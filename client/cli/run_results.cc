@@ -105,6 +105,15 @@ absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t fir
                      recording.rows.front().frame, " to ", recording.rows.back().frame));
   FrameSource selected;
   selected.count = static_cast<int64_t>(positions->size());
+  selected.pass_by = [positions, read = recording.frames.read](
+                         int64_t position, const FrameSource::Visit& visit) -> absl::Status {
+    const auto at = static_cast<size_t>(position);
+    for (int64_t i = at == 0 ? 0 : (*positions)[at - 1] + 1; i < (*positions)[at]; ++i) {
+      CLEAVE_ASSIGN_OR_RETURN(const Frame frame, read(i));
+      CLEAVE_RETURN_IF_ERROR(visit(frame));
+    }
+    return absl::OkStatus();
+  };
   selected.read = [positions, read = recording.frames.read](int64_t position) {
     return read((*positions)[static_cast<size_t>(position)]);
   };

@@ -69,6 +69,7 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
 struct Format {
   // Called for every frame, also where its file stands: later frames depend on it.
   std::function<absl::Status(const Frame& frame)> advance;
+  std::function<absl::Status(const Frame& frame)> pass_by;  // for a frame that gets no file
   std::function<absl::StatusOr<std::string>(const Frame& frame, const std::string& comment)> encode;
 };
 
@@ -118,6 +119,12 @@ class SeriesWriter {
     CLEAVE_RETURN_IF_ERROR(CheckPotencies());
     CLEAVE_RETURN_IF_ERROR(MakeDirectories(options_.folder));
     for (int64_t position = 0; position < frames.count; ++position) {
+      if (frames.pass_by) {
+        CLEAVE_RETURN_IF_ERROR(frames.pass_by(position, [&](const Frame& frame) {
+          key_.Add(frame);
+          return format.pass_by(frame);
+        }));
+      }
       CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames.read(position));
       CLEAVE_RETURN_IF_ERROR(format.advance(frame));
       key_.Add(frame);
@@ -184,6 +191,7 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
   std::optional<VolumeSequence> volume;
   if (content == VtuContent::kVolume) volume.emplace(mesh, sequence, options.node_potencies);
   Format format;
+  format.pass_by = [&](const Frame& frame) { return sequence.PassBy(frame); };
   format.advance = [&](const Frame& frame) -> absl::Status {
     CLEAVE_RETURN_IF_ERROR(sequence.Advance(frame));
     if (volume) volume->Advance(frame);
@@ -205,6 +213,7 @@ absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSour
                                             const Progress& progress) {
   SurfaceSequence sequence(mesh, Carried(options));
   Format format;
+  format.pass_by = [&](const Frame& frame) { return sequence.PassBy(frame); };
   format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
   format.encode = [&](const Frame&, const std::string& comment) {
     return EncodePly(sequence.surface(), comment);
@@ -221,6 +230,7 @@ absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSour
   const SurfaceMaterials materials(mesh);
   const ObjOptions look{"", options.name, absl::StrCat(options.name, ".mtl"), true};
   Format format;
+  format.pass_by = [&](const Frame& frame) { return sequence.PassBy(frame); };
   format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };
   format.encode = [&](const Frame&, const std::string& comment) {
     ObjOptions of_frame = look;

@@ -19,8 +19,6 @@ namespace {
 
 using Eigen::Matrix3f;
 
-constexpr double kBeforeAll = -std::numeric_limits<double>::infinity();
-
 // Edge vectors of a tet from its first corner, as columns.
 Eigen::Matrix3d EdgeMatrix(const std::vector<Vec3>& positions, const std::array<int32_t, 4>& tet) {
   const auto at = [&](size_t k) {
@@ -76,10 +74,17 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
   });
 }
 
+absl::Status SurfaceSequence::PassBy(const Frame& frame) {
+  CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(), last_time_));
+  last_time_ = frame.time;
+  if (!pieces_ || frame.broken_edges != broken_edges_) Follow(frame);
+  return absl::OkStatus();
+}
+
 absl::Status SurfaceSequence::Advance(const Frame& frame) {
-  CLEAVE_RETURN_IF_ERROR(
-      CheckFrame(frame, mesh_, incidence_.edge_count(), started_ ? shown_.time : kBeforeAll));
-  changed_ = !started_ || frame.broken_edges != broken_edges_;
+  CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(), last_time_));
+  last_time_ = frame.time;
+  changed_ = !started_ || is_stale_ || frame.broken_edges != broken_edges_;
   if (changed_) TakeApart(frame);
   moved_.Advance(topology(), changed_, frame.positions, frame.time, options_.velocities);
   shown_.points = moved_.points();
@@ -93,26 +98,34 @@ absl::Status SurfaceSequence::Advance(const Frame& frame) {
   return absl::OkStatus();
 }
 
-void SurfaceSequence::TakeApart(const Frame& frame) {
+void SurfaceSequence::Follow(const Frame& frame) {
   const bool goes_on =
-      started_ && std::includes(frame.broken_edges.begin(), frame.broken_edges.end(),
-                                broken_edges_.begin(), broken_edges_.end());
+      pieces_ && std::includes(frame.broken_edges.begin(), frame.broken_edges.end(),
+                               broken_edges_.begin(), broken_edges_.end());
   if (!goes_on) {
     broken_edges_.clear();
     surface_.emplace(mesh_, incidence_, faces_, SurfaceOptions{});
     pieces_.emplace(mesh_, incidence_);
+    is_cut_stale_ = true;
   }
   std::vector<int32_t> edges;
   std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(), broken_edges_.begin(),
                       broken_edges_.end(), std::back_inserter(edges));
   broken_edges_ = frame.broken_edges;
   surface_->Break(edges);
-  const bool splits = !pieces_->Break(edges).empty();
+  if (!pieces_->Break(edges).empty()) is_cut_stale_ = true;
+  is_stale_ = true;
+}
+
+void SurfaceSequence::TakeApart(const Frame& frame) {
+  if (!pieces_ || frame.broken_edges != broken_edges_) Follow(frame);
+  is_stale_ = false;
   node_pieces_.resize(mesh_.rest_positions.size());
   for (size_t node = 0; node < node_pieces_.size(); ++node)
     node_pieces_[node] = pieces_->piece_of(static_cast<int32_t>(node));
   if (embedded_) {
-    if (splits || !goes_on) embedded_->Cut(*pieces_);
+    if (is_cut_stale_) embedded_->Cut(*pieces_);
+    is_cut_stale_ = false;
     embedded_->SetMasks(surface_->topology().tet_masks);
   }
   Show();

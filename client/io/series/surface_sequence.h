@@ -2,6 +2,7 @@
 #define CLEAVE_CLIENT_IO_SERIES_SURFACE_SEQUENCE_H_
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -44,6 +45,9 @@ class SurfaceSequence {
   // Goes on to `frame`, whose time is not before the last one's; frames may be left out. Errors:
   // InvalidArgument for a frame that is not this mesh's or not finite; then nothing changed.
   absl::Status Advance(const Frame& frame);
+  // Takes note of what broke in a frame that is not to be shown, and nothing else: the names of
+  // pieces follow from it. Errors: as of Advance.
+  absl::Status PassBy(const Frame& frame);
 
   // The surface of the last frame. Piece ids are those of NamedPieces: they follow from the frames
   // that were given, and are the simulation's own where none was left out. Strains are means over
@@ -69,6 +73,8 @@ class SurfaceSequence {
   std::vector<float> TetStrains(const std::vector<Vec3>& positions) const;
 
  private:
+  // Breaks what broke since the last frame.
+  void Follow(const Frame& frame);
   void TakeApart(const Frame& frame);
   // Copies what the topology says into shown_.
   void Show();
@@ -87,6 +93,9 @@ class SurfaceSequence {
 
   bool started_ = false;
   bool changed_ = false;
+  bool is_stale_ = false;      // what is shown is of fewer broken edges
+  bool is_cut_stale_ = false;  // so is how the render mesh is cut
+  double last_time_ = -std::numeric_limits<double>::infinity();  // s
   std::vector<int32_t> broken_edges_;
   std::optional<VisibleSurface> surface_;
   std::optional<EmbeddedMesh> embedded_;

@@ -139,6 +139,42 @@ TEST(SurfaceSequence, ARenderMeshStandsForTheSurfaceAndBreaksWithThePieces) {
   }
 }
 
+TEST(SurfaceSequence, FramesPassedByNamePiecesAsFramesShownDo) {
+  const TetMesh mesh = TwoTets();
+  const Incidence incidence = BuildIncidence(mesh);
+  Frame tip = AtRest(mesh);
+  tip.time = 0.1;
+  tip.broken_edges = EdgesAtTip(mesh);
+  Frame both = tip;
+  both.time = 0.2;
+  for (const int32_t edge : incidence.node_edges[0]) both.broken_edges.push_back(edge);
+  std::sort(both.broken_edges.begin(), both.broken_edges.end());
+  SurfaceSequence shown(mesh, {});
+  ASSERT_TRUE(shown.Advance(tip).ok());
+  ASSERT_TRUE(shown.Advance(both).ok());
+  EXPECT_THAT(shown.node_pieces(), ElementsAre(2, 0, 0, 0, 1));
+  SurfaceSequence sought(mesh, {});
+  ASSERT_TRUE(sought.PassBy(AtRest(mesh)).ok());
+  ASSERT_TRUE(sought.PassBy(tip).ok());
+  EXPECT_FALSE(sought.PassBy(AtRest(mesh)).ok());  // back in time
+  ASSERT_TRUE(sought.Advance(both).ok());
+  EXPECT_TRUE(sought.changed());
+  EXPECT_THAT(sought.node_pieces(), ElementsAre(2, 0, 0, 0, 1));
+  EXPECT_EQ(sought.topology().point_ids, shown.topology().point_ids);
+  EXPECT_EQ(sought.surface().points, shown.surface().points);
+  both.time = 0.3;
+  ASSERT_TRUE(sought.Advance(both).ok());
+  EXPECT_FALSE(sought.changed());
+  // Passed by last: what is shown next is of all that broke.
+  SurfaceSequence late(mesh, {});
+  ASSERT_TRUE(late.Advance(tip).ok());
+  ASSERT_TRUE(late.PassBy(both).ok());
+  both.time = 0.4;
+  ASSERT_TRUE(late.Advance(both).ok());
+  EXPECT_EQ(late.piece_count(), 3);
+  EXPECT_EQ(late.surface().triangles.size(), shown.surface().triangles.size());
+}
+
 TEST(SurfaceSequence, VelocityAndDisplacementFollowARigidMotionAlsoWhereEdgesBreak) {
   const TetMesh mesh = TwoTets();
   SurfaceSequence sequence(mesh, {.displacements = true, .velocities = true});
