@@ -246,8 +246,9 @@ void EmbeddedMesh::FindHubs() {
   };
   std::vector<Vec3> cuts(edges_.size());
   for (size_t edge = 0; edge < edges_.size(); ++edge) {
-    const auto [low, high] = std::minmax(Label(static_cast<size_t>(edges_[edge][0])),
-                                         Label(static_cast<size_t>(edges_[edge][1])));
+    const int32_t from = Label(static_cast<size_t>(edges_[edge][0]));
+    const int32_t to = Label(static_cast<size_t>(edges_[edge][1]));
+    const auto [low, high] = std::minmax(from, to);  // refers to them
     if (low == high) continue;
     double share = 0;
     cuts[edge] = CutAt(edge, share);
