@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <iterator>
 #include <numeric>
+#include <utility>
+
+#include "core/base/counter_rng.h"
 
 namespace cleave {
 namespace {
@@ -69,6 +72,47 @@ double Jaccard(std::span<const int32_t> a, std::span<const int32_t> b) {
   std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
   const size_t all = a.size() + b.size() - common.size();
   return all == 0 ? 1 : static_cast<double>(common.size()) / static_cast<double>(all);
+}
+
+GroupComparison CompareGroups(size_t count, size_t first,
+                              const std::function<double(size_t i, size_t j)>& distance,
+                              uint32_t seed, int regroupings) {
+  std::vector<double> distances(count * count, 0);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j < i; ++j)
+      distances[i * count + j] = distances[j * count + i] = distance(i, j);
+  }
+  std::vector<size_t> order(count);
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto compare = [&] {
+    GroupComparison means;
+    double pairs_within = 0, pairs_between = 0;
+    for (size_t i = 0; i < count; ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const bool same = (i < first) == (j < first);
+        (same ? means.within : means.between) += distances[order[i] * count + order[j]];
+        (same ? pairs_within : pairs_between) += 1;
+      }
+    }
+    means.within /= pairs_within;
+    means.between /= pairs_between;
+    return means;
+  };
+  GroupComparison found = compare();
+  // Regroupings that differ from this one by rounding alone are as far apart.
+  const double excess = found.between - found.within - 1e-12 * found.within;
+  int as_far = 1;
+  for (int round = 0; round < regroupings; ++round) {
+    for (size_t i = count; i > 1; --i) {
+      const double draw =
+          UniformDraw(seed, RandomStream::kEdgeDeal, i, static_cast<uint64_t>(round));
+      std::swap(order[i - 1], order[static_cast<size_t>(draw * static_cast<double>(i))]);
+    }
+    const GroupComparison other = compare();
+    as_far += other.between - other.within >= excess ? 1 : 0;
+  }
+  found.p = static_cast<double>(as_far) / (regroupings + 1);
+  return found;
 }
 
 }  // namespace cleave

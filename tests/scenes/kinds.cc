@@ -5,10 +5,12 @@
 #include "tests/scenes/branch.h"
 #include "tests/scenes/column.h"
 #include "tests/scenes/demonstration.h"
+#include "tests/scenes/drawn_slab.h"
 #include "tests/scenes/ductile_bar.h"
 #include "tests/scenes/fibre_bar.h"
 #include "tests/scenes/locality.h"
 #include "tests/scenes/meat_loaf.h"
+#include "tests/scenes/noise_models.h"
 #include "tests/scenes/pizza.h"
 #include "tests/scenes/slab_trio.h"
 #include "tests/scenes/steak.h"
@@ -97,6 +99,23 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakePizza,
        MeasurePizza,
        PizzaCriteria()},
+      {"noise_models",
+       "A tube with Gaussian noise and with uniform noise",
+       "Fig. 12",
+       NoiseModelsVariants(),
+       MakeNoiseModels,
+       MeasureNoiseModels,
+       NoiseModelsCriteria(),
+       {"gaussian-1", "uniform-1", "strong-1"}},
+#ifdef CLEAVE_SCENES_WITH_PICTURES
+      {"drawn_slab",
+       "A slab with a drawing pushed through it",
+       "Fig. 10",
+       {"drawn", "turned", "plain"},
+       MakeDrawnSlab,
+       MeasureDrawnSlab,
+       DrawnSlabCriteria()},
+#endif
   };
   return kKinds;
 }

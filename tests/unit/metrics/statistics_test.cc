@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace cleave {
@@ -42,6 +44,28 @@ TEST(Statistics, JaccardIsTheCommonShare) {
   EXPECT_EQ(Jaccard(a, a), 1);
   EXPECT_EQ(Jaccard(a, {}), 0);
   EXPECT_EQ(Jaccard({}, {}), 1);
+}
+
+TEST(Statistics, GroupsDifferWhereTheirMembersLieApart) {
+  // On a line: 0 to 4 against 10 to 14, and even numbers against odd ones.
+  const auto apart = CompareGroups(
+      10, 5,
+      [](size_t i, size_t j) {
+        const auto place = [](size_t k) { return static_cast<double>(k < 5 ? k : k + 5); };
+        return std::abs(place(i) - place(j));
+      },
+      1);
+  EXPECT_DOUBLE_EQ(apart.within, 2);
+  EXPECT_DOUBLE_EQ(apart.between, 10);
+  EXPECT_LT(apart.p, 0.02);
+  const auto mixed = CompareGroups(
+      10, 5,
+      [](size_t i, size_t j) {
+        const auto place = [](size_t k) { return static_cast<double>(k < 5 ? 2 * k : 2 * k - 9); };
+        return std::abs(place(i) - place(j));
+      },
+      1);
+  EXPECT_GT(mixed.p, 0.3);
 }
 
 TEST(Statistics, ValuesAreCountedWhereACriterionHolds) {

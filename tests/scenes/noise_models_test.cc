@@ -1,0 +1,17 @@
+#include <gtest/gtest.h>
+
+#include "tests/scenes/scene_testing.h"
+
+namespace cleave {
+namespace {
+
+TEST(NoiseModels, UniformAndGaussianNoiseOfOneVarianceBreakAlike) {
+  ExpectCriteria("noise_models", {.seed = 1, .coarseness = 1.5});
+}
+
+TEST(FullNoiseModels, UniformAndGaussianNoiseOfOneVarianceBreakAlike) {
+  ExpectCriteriaInFull("noise_models");
+}
+
+}  // namespace
+}  // namespace cleave
