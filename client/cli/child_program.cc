@@ -1,5 +1,6 @@
 #include "client/cli/child_program.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -53,6 +54,9 @@ absl::StatusOr<std::unique_ptr<ChildProgram>> ChildProgram::Start(
   const File given(std::tmpfile());
   if (child->output_ == nullptr || child->errors_ == nullptr || given == nullptr)
     return absl::InternalError(absl::StrCat("a temporary file for ", child->name_, ": ", Reason()));
+  // Children that run beside this one have no use for its files.
+  for (std::FILE* file : {child->output_.get(), child->errors_.get(), given.get()})
+    fcntl(fileno(file), F_SETFD, FD_CLOEXEC);
   if (std::fwrite(input.data(), 1, input.size(), given.get()) != input.size() ||
       std::fflush(given.get()) != 0)
     return absl::InternalError(absl::StrCat("input for ", child->name_, ": ", Reason()));
@@ -61,6 +65,8 @@ absl::StatusOr<std::unique_ptr<ChildProgram>> ChildProgram::Start(
   std::vector<char*> arguments;
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  // Whoever started this program may have it ignore children, and waiting would find none.
+  signal(SIGCHLD, SIG_DFL);
   const pid_t parent = getpid();
   child->pid_ = fork();
   if (child->pid_ == 0) {
@@ -88,8 +94,9 @@ void ChildProgram::Stop() {
 
 absl::StatusOr<std::string> ChildProgram::Output() {
   if (pid_ >= 0) {
-    waitpid(pid_, &wait_status_, 0);
+    const pid_t ended = waitpid(pid_, &wait_status_, 0);
     pid_ = -1;
+    if (ended < 0) return absl::InternalError(absl::StrCat("waiting for ", name_, ": ", Reason()));
   }
   if (WIFEXITED(wait_status_) && WEXITSTATUS(wait_status_) == 0) return ContentOf(output_.get());
   const std::string errors(absl::StripAsciiWhitespace(ContentOf(errors_.get())));

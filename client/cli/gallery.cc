@@ -269,7 +269,7 @@ void AddGallery(CLI::App& app, Program& program) {
       ->capture_default_str()
       ->type_name("N");
   verb->add_option("--jobs", options->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, 256))
       ->capture_default_str()
       ->type_name("N");
   verb->add_option("--runner", options->runner,

@@ -127,6 +127,9 @@ std::string GalleryFolder::Find(const GalleryRun& run) const {
 }
 
 absl::Status GalleryFolder::Keep(const GalleryRun& run, absl::string_view line) const {
+  // A picture that stands already is another build's.
+  std::error_code error;
+  if (!run.pictured) std::filesystem::remove(PicturePath(run), error);
   return WriteAside(RecordPath(run), absl::StrCat(head_, line));
 }
 

@@ -159,6 +159,19 @@ absl::Status FrameStream::AddChunk(const v1::FrameChunk& chunk, bool& whole) {
   return absl::OkStatus();
 }
 
+absl::Status FrameStream::AddEvents(const v1::FrameEvents& events) {
+  if (events_.frame() != 0 && events_.frame() != events.frame())
+    return absl::DataLossError(absl::StrCat("events of frame ", events.frame(),
+                                            " came between those of frame ", events_.frame(),
+                                            " and the frame"));
+  events_bytes_ += events.ByteSizeLong();
+  if (events_bytes_ > kMaxFrameBytes)
+    return absl::DataLossError(
+        absl::StrCat("events of frame ", events.frame(), " take more than a frame may"));
+  events_.MergeFrom(events);
+  return absl::OkStatus();
+}
+
 absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
   v1::StreamFramesResponse response;
   while (reader_->Read(&response)) {
@@ -170,8 +183,7 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
       end_ = response.end();
       return std::nullopt;
     } else if (response.has_events()) {
-      // More of the same frame's; frame numbers of both agree, or Accept finds them to differ.
-      events_.MergeFrom(response.events());
+      CLEAVE_RETURN_IF_ERROR(AddEvents(response.events()));
     } else if (response.has_chunk()) {
       bool whole = false;
       CLEAVE_RETURN_IF_ERROR(AddChunk(response.chunk(), whole));
@@ -198,6 +210,7 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string byt
   StreamedFrame frame;
   v1::FrameEvents events;
   events.Swap(&events_);
+  events_bytes_ = 0;
   {
     const absl::StatusOr<FrameParts> parts = SplitFrame(bytes);
     if (!parts.ok()) return parts.status();

@@ -95,6 +95,7 @@ class FrameStream {
   // Reads messages until a whole new frame or the end. Unavailable: cut, may be tried again.
   absl::StatusOr<std::optional<StreamedFrame>> ReadOne();
   absl::Status AddChunk(const v1::FrameChunk& chunk, bool& whole);
+  absl::Status AddEvents(const v1::FrameEvents& events);
   absl::StatusOr<std::optional<StreamedFrame>> Accept(std::string bytes);
   // After a failed attempt: waits, or says why not to go on.
   absl::Status Recover(const absl::Status& why);
@@ -114,6 +115,7 @@ class FrameStream {
   uint64_t assembly_bytes_ = 0;  // wanted; 0: between frames
   int64_t assembly_frame_ = 0;
   v1::FrameEvents events_;  // of the frame to come
+  uint64_t events_bytes_ = 0;
 
   std::mutex mutex_;  // guards context_'s exchange against Cancel
   bool cancelled_ = false;

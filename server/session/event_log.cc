@@ -11,7 +11,7 @@ namespace cleave {
 namespace {
 
 constexpr int64_t kHeadBytes = 16;
-constexpr int64_t kMaxRecordBytes = int64_t{1} << 31;
+constexpr int64_t kMaxRecordBytes = (int64_t{1} << 31) - 1;  // of Protobuf
 
 struct Record {
   int64_t frame;
@@ -48,6 +48,7 @@ absl::StatusOr<std::optional<std::string>> ReadPayload(const FileDescriptor& fil
 
 absl::StatusOr<EventLogWriter> EventLogWriter::Open(const std::string& path, int64_t head) {
   CLEAVE_ASSIGN_OR_RETURN(FileDescriptor file, OpenFile(path, O_RDWR | O_CREAT));
+  CLEAVE_RETURN_IF_ERROR(SyncDirectory(path.substr(0, path.find_last_of('/'))));
   EventLogWriter log(path, std::move(file));
   CLEAVE_ASSIGN_OR_RETURN(const int64_t file_size, FileSize(log.file_, path));
   while (true) {
@@ -55,7 +56,9 @@ absl::StatusOr<EventLogWriter> EventLogWriter::Open(const std::string& path, int
                             ReadHead(log.file_, log.size_, file_size, path));
     if (!record || record->frame <= log.last_frame_ || record->frame > head) break;
     CLEAVE_ASSIGN_OR_RETURN(const auto payload, ReadPayload(log.file_, log.size_, *record, path));
-    if (!payload) break;
+    if (!payload)
+      return absl::DataLossError(absl::StrCat(path, ": the events of frame ", record->frame,
+                                              " do not match their checksum"));
     log.last_frame_ = record->frame;
     log.size_ += kHeadBytes + record->bytes;
   }
@@ -64,10 +67,11 @@ absl::StatusOr<EventLogWriter> EventLogWriter::Open(const std::string& path, int
 }
 
 absl::Status EventLogWriter::Append(const v1::FrameEvents& events) {
-  const std::string payload = events.SerializeAsString();
-  if (static_cast<int64_t>(payload.size()) > kMaxRecordBytes)
+  const size_t payload_bytes = events.ByteSizeLong();
+  if (payload_bytes > static_cast<size_t>(kMaxRecordBytes))
     return absl::ResourceExhaustedError(
-        absl::StrCat("the events of frame ", events.frame(), " take ", payload.size(), " bytes"));
+        absl::StrCat("the events of frame ", events.frame(), " take ", payload_bytes, " bytes"));
+  const std::string payload = events.SerializeAsString();
   std::string bytes;
   ByteWriter out(bytes);
   out.Put<int64_t>(events.frame());

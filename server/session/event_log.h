@@ -19,7 +19,9 @@ namespace cleave {
 // Appends records. One writer at a time (owner_lock.h). Not thread-safe.
 class EventLogWriter {
  public:
-  // Cuts what a crash left behind: a torn record, and those of frames after `head`.
+  // Cuts what a crash left behind: a torn record, and those of frames after `head`. Errors:
+  // DataLoss for a damaged record of a committed frame, whose events would be missed without a
+  // word.
   static absl::StatusOr<EventLogWriter> Open(const std::string& path, int64_t head);
 
   // Frame of the last record, 0 for none (frame 0 has no events).

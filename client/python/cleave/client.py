@@ -95,6 +95,8 @@ class Client:
                 ("grpc.keepalive_time_ms", 20_000),
                 ("grpc.keepalive_timeout_ms", 10_000),
                 ("grpc.enable_http_proxy", 0),
+                # The parts that come off in one frame may take more than gRPC's 4 MiB.
+                ("grpc.max_receive_message_length", 256 << 20),
             ],
         )
         self._assets = asset_pb2_grpc.AssetServiceStub(self._channel)
@@ -418,6 +420,12 @@ class Session:
                             message.start.header, mesh.positions, mesh.edges()
                         )
                     elif event == "events":
+                        if broken.frame not in (0, message.events.frame):
+                            raise CleaveError(
+                                grpc.StatusCode.DATA_LOSS,
+                                f"events of frame {message.events.frame} came between those of "
+                                f"frame {broken.frame} and the frame",
+                            )
                         broken.MergeFrom(message.events)
                     elif event == "chunk":
                         data += message.chunk.payload

@@ -16,7 +16,7 @@ constexpr uint32_t kDefaultChunkBytes = 256 << 10;
 constexpr uint32_t kMinChunkBytes = 16 << 10;
 constexpr uint32_t kMaxChunkBytes = 1 << 20;
 constexpr std::chrono::seconds kHeartbeat{5};
-constexpr int kEventsPerMessage = 1000;  // below 200 KB
+constexpr int kEventsPerMessage = 1000;  // edges below 200 KB; a split has all of its parts
 
 }  // namespace
 

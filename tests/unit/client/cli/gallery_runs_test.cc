@@ -75,6 +75,12 @@ TEST_F(GalleryFolderTest, AsksForThePictureOfARunThatHasOne) {
   EXPECT_EQ(folder.Find(run), "");
   ASSERT_TRUE(WriteAside(folder.PicturePath(run), "png").ok());
   EXPECT_EQ(folder.Find(run), "{}\n");
+  // The picture is not that of another build's run, which made none.
+  const GalleryFolder later(path_, "build2", 800);
+  GalleryRun unpictured = run;
+  unpictured.pictured = false;
+  ASSERT_TRUE(later.Keep(unpictured, "{}\n").ok());
+  EXPECT_EQ(later.Find(run), "");
 }
 
 TEST(ChildProgram, GivesWhatItPrintedOrWhyItFailed) {

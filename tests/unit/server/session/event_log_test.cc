@@ -75,7 +75,11 @@ TEST(EventLogTest, DamageIsFoundAtEveryByteOfARecord) {
     WriteBytes(directory / "events", damaged);
     EventLogReader reader(directory / "events");
     EXPECT_EQ(reader.Read(3).status().code(), absl::StatusCode::kDataLoss) << at;
-    EXPECT_EQ(EventLogWriter::Open(directory / "events", 9)->last_frame(), 0) << at;
+    EXPECT_EQ(EventLogWriter::Open(directory / "events", 9).status().code(),
+              absl::StatusCode::kDataLoss)
+        << at;
+    EXPECT_EQ(EventLogWriter::Open(directory / "events", 2)->last_frame(), 0) << at;
+    WriteBytes(directory / "events", bytes);
   }
 }
 
