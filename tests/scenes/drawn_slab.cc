@@ -167,6 +167,8 @@ std::vector<Criterion> DrawnSlabCriteria() {
        true,
        kAll},
       {"Without a drawing it does not", {"plain"}, follows("plain"), true, kAll},
+      // Full-sized unstructured bodies miss this by a little (0.09, 0.12 and 0.11 of seeds 2 to 4):
+      // so few edges break, and a crack from side to side has to cross the drawing.
       {"Without a drawing it takes no notice of where it would be",
        {"plain"},
        {{"share of broken edges within a cell of the drawing, beyond that of all edges",
