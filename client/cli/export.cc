@@ -3,9 +3,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/cli/console.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
@@ -14,6 +16,7 @@
 #include "client/io/export/export_series.h"
 #include "client/io/series/write_aside.h"
 #include "client/io/surface/surface_file.h"
+#include "core/base/faults.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -31,7 +34,7 @@ struct Options {
   int64_t last = std::numeric_limits<int64_t>::max();
   int64_t stride = 1;
   std::string render_mesh;
-  double render_scale = 1;
+  std::optional<double> render_scale;
   std::optional<double> rate;
   bool velocities = false;
 };
@@ -84,17 +87,31 @@ absl::Status ExportBake(Program& program, const Options& options, const Recorded
   return absl::OkStatus();
 }
 
-absl::StatusOr<RenderMesh> LoadRenderMesh(const Options& options) {
-  if (options.format != "vtu" && options.format != "ply" && options.format != "obj")
-    return absl::InvalidArgumentError(
-        absl::StrCat("--render-mesh goes with --format vtu, ply and obj, not ", options.format));
+// Options that the format has no use for, all at once.
+absl::Status CheckFormat(const Options& options) {
+  Faults faults;
+  const auto goes_with = [&](bool given, const char* option, std::set<std::string> formats) {
+    if (given && formats.count(options.format) == 0)
+      faults.Error(option, absl::StrCat("goes with --format ", absl::StrJoin(formats, ", "),
+                                        ", not ", options.format));
+  };
+  goes_with(!options.render_mesh.empty(), "--render-mesh", {"vtu", "ply", "obj"});
+  goes_with(options.rate.has_value(), "--rate", {"bake-mdd", "glb", "usda"});
+  goes_with(options.velocities, "--velocities", {"bake-pc2", "bake-mdd", "glb"});
+  if (options.render_scale.has_value() && options.render_mesh.empty())
+    faults.Error("--render-scale", "is of --render-mesh, which is missing");
+  return faults.ToStatus();
+}
+
+absl::StatusOr<RenderMesh> LoadRenderMesh(const Options& options, const TetMesh& mesh) {
   CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(options.render_mesh));
   for (Vec3& point : surface.vertices) {
-    for (double& coordinate : point) coordinate *= options.render_scale;
+    for (double& coordinate : point) coordinate *= options.render_scale.value_or(1);
   }
   RenderMesh render{std::move(surface.vertices), std::move(surface.triangles),
                     std::move(surface.uvs)};
-  const absl::Status status = CheckRenderMesh(render);
+  absl::Status status = CheckRenderMesh(render);
+  if (status.ok()) status = CheckRenderMeshFits(render, mesh.rest_positions);
   if (!status.ok())
     return absl::InvalidArgumentError(absl::StrCat(options.render_mesh, ": ", status.message()));
   if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
@@ -104,9 +121,8 @@ absl::StatusOr<RenderMesh> LoadRenderMesh(const Options& options) {
 }
 
 absl::Status Export(Program& program, const Options& options) {
+  CLEAVE_RETURN_IF_ERROR(CheckFormat(options));
   if (options.format == "plot") return ExportPlot(options);
-  if (!options.render_mesh.empty() && BakeFormats().count(options.format) > 0)
-    return LoadRenderMesh(options).status();
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
@@ -120,7 +136,7 @@ absl::Status Export(Program& program, const Options& options) {
   }
   RenderMesh render_mesh;
   if (!options.render_mesh.empty()) {
-    CLEAVE_ASSIGN_OR_RETURN(render_mesh, LoadRenderMesh(options));
+    CLEAVE_ASSIGN_OR_RETURN(render_mesh, LoadRenderMesh(options, run.mesh));
     target.render_mesh = &render_mesh;
   }
   const Progress progress = ShowingProgress("exporting frames", program.interrupt);
@@ -174,9 +190,8 @@ void AddExport(CLI::App& app, Program& program) {
           "pieces")
       ->type_name("FILE");
   verb->add_option("--render-scale", options->render_scale,
-                   "Metres for one unit of the render mesh")
+                   "Metres for one unit of the render mesh; default: 1")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str()
       ->type_name("METRES");
   verb->add_option("--reports", options->reports,
                    "For plot: the report lines; default: reports.jsonl in RUN")

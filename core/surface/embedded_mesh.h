@@ -40,7 +40,8 @@ namespace cleave {
 // further where triples of nodes would be no face of a tet. Not thread-safe.
 class EmbeddedMesh {
  public:
-  // `mesh`, `incidence` and `faces` must outlive this object. Precondition: CheckRenderMesh holds.
+  // `mesh`, `incidence` and `faces` must outlive this object. Preconditions: CheckRenderMesh and
+  // CheckRenderMeshFits hold.
   EmbeddedMesh(const TetMesh& mesh, const Incidence& incidence, const Faces& faces,
                RenderMesh render);
 

@@ -1,7 +1,9 @@
 #include "core/surface/render_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <unordered_map>
 
 #include "absl/strings/str_cat.h"
@@ -38,6 +40,42 @@ absl::Status CheckRenderMesh(const RenderMesh& mesh) {
     }
   }
   return faults.ToStatus();
+}
+
+absl::Status CheckRenderMeshFits(const RenderMesh& mesh, std::span<const Vec3> rest_positions) {
+  constexpr double kMostRatio = 4;
+  struct Box {
+    Vec3 low, high;
+    double Diagonal() const {
+      return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    }
+  };
+  const auto box_of = [](std::span<const Vec3> points) {
+    Box box{points[0], points[0]};
+    for (const Vec3& p : points) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::min(box.low[axis], p[axis]);
+        box.high[axis] = std::max(box.high[axis], p[axis]);
+      }
+    }
+    return box;
+  };
+  const Box render = box_of(mesh.points);
+  const Box body = box_of(rest_positions);
+  const double render_size = render.Diagonal();
+  const double body_size = body.Diagonal();
+  if (!(render_size <= kMostRatio * body_size && body_size <= kMostRatio * render_size)) {
+    return absl::InvalidArgumentError(absl::StrCat("spans ", render_size, " m, the body ",
+                                                   body_size, " m: is it in the same units?"));
+  }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (render.low[axis] <= body.high[axis] && body.low[axis] <= render.high[axis]) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("lies beside the body: along ", std::string(1, "xyz"[axis]), " in [",
+                     render.low[axis], ", ", render.high[axis], "] m, the body in [",
+                     body.low[axis], ", ", body.high[axis], "] m"));
+  }
+  return absl::OkStatus();
 }
 
 int64_t CountOpenEdges(const std::vector<std::array<int32_t, 3>>& triangles) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -23,6 +24,11 @@ struct RenderMesh {
 // Whether ids are in range, numbers finite and arrays fit. Errors: InvalidArgument, naming the
 // array and its first bad item.
 absl::Status CheckRenderMesh(const RenderMesh& mesh);
+
+// Whether a mesh is of the size of the body and where it is: one in other units would be divided
+// into triangles without number. Errors: InvalidArgument where bounding boxes do not meet or the
+// diagonal of one is more than four times the other's.
+absl::Status CheckRenderMeshFits(const RenderMesh& mesh, std::span<const Vec3> rest_positions);
 
 // Edges of a mesh that have no counterpart, or too many: 0 for a closed oriented surface.
 int64_t CountOpenEdges(const std::vector<std::array<int32_t, 3>>& triangles);

@@ -407,11 +407,15 @@ class EmbeddedRuns(CliTest):
         self.assertEqual(len(list((out / "ply").glob("*.ply"))), 3)
         self.assertNotIn("not closed", errors)
         mesh.write_text("v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 3 2\n")
-        code, _, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh)
+        code, _, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh,
+                                 "--render-scale", "0.001")
         self.assertIn("is not closed: 3 edges", errors)
+        code, _, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh)
+        self.assertEqual(code, 3)
+        self.assertIn("same units", errors)
         code, _, errors = cleave("export", out, "--format", "glb", "--render-mesh", mesh)
         self.assertEqual(code, 3)
-        self.assertIn("--render-mesh goes with --format vtu, ply and obj, not glb", errors)
+        self.assertIn("--render-mesh: goes with --format obj, ply, vtu, not glb", errors)
 
     def test_other_scene_in_the_same_folder_is_refused_unless_fresh(self):
         out = self.folder / "out"

@@ -255,6 +255,24 @@ TEST_F(EmbeddedMeshTest, FollowsRigidMotionsOfEachPieceExactly) {
   EXPECT_GT(checked, 1000u);
 }
 
+TEST(RenderMesh, OneInOtherUnitsOrElsewhereIsRefused) {
+  const std::vector<Vec3> body = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  RenderMesh mesh;
+  mesh.points = {{0.5, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(CheckRenderMeshFits(mesh, body).ok());
+  for (const double scale : {1000.0, 0.001}) {
+    RenderMesh scaled = mesh;
+    for (Vec3& p : scaled.points) {
+      for (double& coordinate : p) coordinate *= scale;
+    }
+    EXPECT_EQ(CheckRenderMeshFits(scaled, body).code(), absl::StatusCode::kInvalidArgument);
+  }
+  for (Vec3& p : mesh.points) p[2] += 1.5;
+  EXPECT_EQ(CheckRenderMeshFits(mesh, body).message(),
+            "lies beside the body: along z in [1.5, 1.5] m, the body in [0, 1] m");
+}
+
 TEST(RenderMesh, FaultsAreNamedAndOpenEdgesCounted) {
   RenderMesh mesh;
   EXPECT_FALSE(CheckRenderMesh(mesh).ok());
