@@ -98,6 +98,9 @@ absl::Status CheckFormat(const Options& options) {
   goes_with(!options.render_mesh.empty(), "--render-mesh", {"vtu", "ply", "obj"});
   goes_with(options.rate.has_value(), "--rate", {"bake-mdd", "glb", "usda"});
   goes_with(options.velocities, "--velocities", {"bake-pc2", "bake-mdd", "glb"});
+  if (options.name.empty() || options.name.find('/') != std::string::npos)
+    faults.Error("--name",
+                 absl::StrCat("\"", options.name, "\" is no name of a file: --to says where"));
   if (options.render_scale.has_value() && options.render_mesh.empty())
     faults.Error("--render-scale", "is of --render-mesh, which is missing");
   return faults.ToStatus();
@@ -199,7 +202,7 @@ void AddExport(CLI::App& app, Program& program) {
   verb->add_option("--first", options->first, "First frame")->check(CLI::NonNegativeNumber);
   verb->add_option("--last", options->last, "Last frame")->check(CLI::NonNegativeNumber);
   verb->add_option("--stride", options->stride, "Every N-th frame")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(int64_t{1}, int64_t{1} << 40))
       ->type_name("N");
   verb->add_option("--rate", options->rate,
                    "For bake-mdd, glb and usda: frames a second when played; default: as simulated")

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -76,6 +77,8 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   std::error_code error;
   const bool folder = std::filesystem::is_directory(path, error);
   const std::string frames = folder ? RunFolder(path).frames() : path;
+  if (!std::filesystem::exists(frames, error))
+    return absl::NotFoundError(absl::StrCat(frames, ": there is no such recording"));
   std::string mesh_file = mesh_path;
   if (mesh_file.empty()) mesh_file = FolderOf(path).mesh();
   if (mesh_path.empty() && !std::filesystem::exists(mesh_file, error))
@@ -100,9 +103,10 @@ absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t fir
       positions->push_back(static_cast<int64_t>(i));
   }
   if (positions->empty())
-    return absl::InvalidArgumentError(
-        absl::StrCat("no frame is left between ", first, " and ", last, "; the recording has ",
-                     recording.rows.front().frame, " to ", recording.rows.back().frame));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "no frame is left from ", first,
+        last == std::numeric_limits<int64_t>::max() ? "" : absl::StrCat(" to ", last),
+        "; the recording has ", recording.rows.front().frame, " to ", recording.rows.back().frame));
   FrameSource selected;
   selected.count = static_cast<int64_t>(positions->size());
   selected.pass_by = [positions, read = recording.frames.read](

@@ -43,7 +43,7 @@ absl::Status CheckRenderMesh(const RenderMesh& mesh) {
 }
 
 absl::Status CheckRenderMeshFits(const RenderMesh& mesh, std::span<const Vec3> rest_positions) {
-  constexpr double kMostRatio = 4;
+  constexpr double kMostRatio = 1.5;
   struct Box {
     Vec3 low, high;
     double Diagonal() const {

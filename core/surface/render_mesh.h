@@ -27,7 +27,7 @@ absl::Status CheckRenderMesh(const RenderMesh& mesh);
 
 // Whether a mesh is of the size of the body and where it is: one in other units would be divided
 // into triangles without number. Errors: InvalidArgument where bounding boxes do not meet or the
-// diagonal of one is more than four times the other's.
+// diagonal of one is more than 1.5 times the other's.
 absl::Status CheckRenderMeshFits(const RenderMesh& mesh, std::span<const Vec3> rest_positions);
 
 // Edges of a mesh that have no counterpart, or too many: 0 for a closed oriented surface.

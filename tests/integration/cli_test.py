@@ -399,14 +399,14 @@ class EmbeddedRuns(CliTest):
         out = self.folder / "out"
         self.assertEqual(cleave("run", self.scene(BLOCK % 2), "--out", out, "-q")[0], 0)
         mesh = self.folder / "fine.obj"
-        mesh.write_text("v 0 0 0\nv 100 0 0\nv 0 100 0\nv 0 0 100\n"
+        mesh.write_text("v 0 0 0\nv 400 0 0\nv 0 100 0\nv 0 0 100\n"
                         "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
         code, output, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh,
                                       "--render-scale", "0.001")
         self.assertEqual((code, output), (0, f"{out}/ply\n"), errors)
         self.assertEqual(len(list((out / "ply").glob("*.ply"))), 3)
         self.assertNotIn("not closed", errors)
-        mesh.write_text("v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 3 2\n")
+        mesh.write_text("v 0 0 0\nv 400 0 0\nv 0 100 0\nf 1 3 2\n")
         code, _, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh,
                                  "--render-scale", "0.001")
         self.assertIn("is not closed: 3 edges", errors)

@@ -35,7 +35,9 @@ TEST(GalleryRuns, AreOfEveryVariantAndPicturedOnce) {
   int pictured = 0;
   for (const GalleryRun& run : runs) {
     pictured += run.pictured ? 1 : 0;
-    if (run.pictured) EXPECT_TRUE(run.variant == "b" && run.seed == 2 && run.layout == "lattice");
+    if (run.pictured) {
+      EXPECT_TRUE(run.variant == "b" && run.seed == 2 && run.layout == "lattice");
+    }
   }
   EXPECT_EQ(pictured, 1);
 }

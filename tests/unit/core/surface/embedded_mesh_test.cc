@@ -258,7 +258,7 @@ TEST_F(EmbeddedMeshTest, FollowsRigidMotionsOfEachPieceExactly) {
 TEST(RenderMesh, OneInOtherUnitsOrElsewhereIsRefused) {
   const std::vector<Vec3> body = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   RenderMesh mesh;
-  mesh.points = {{0.5, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  mesh.points = {{0.1, 0, 0}, {1.5, 0, 0}, {0, 1.5, 0}};
   mesh.triangles = {{0, 1, 2}};
   EXPECT_TRUE(CheckRenderMeshFits(mesh, body).ok());
   for (const double scale : {1000.0, 0.001}) {

@@ -29,7 +29,9 @@ TEST(EventLogTest, FramesHaveTheirEventsAndOthersNone) {
     const auto events = early.Read(frame);
     ASSERT_TRUE(events.ok());
     ASSERT_EQ(events->has_value(), frame == 2 || frame == 5 || frame == 6) << frame;
-    if (events->has_value()) EXPECT_EQ((*events)->edge_breaks_size(), frame);
+    if (events->has_value()) {
+      EXPECT_EQ((*events)->edge_breaks_size(), frame);
+    }
   }
   // A reader of later frames passes by earlier ones.
   EventLogReader late(directory / "events");
