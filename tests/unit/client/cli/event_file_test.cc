@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <iterator>
+
+#include "absl/strings/str_cat.h"
 
 namespace cleave {
 namespace {
@@ -41,7 +44,11 @@ std::string ContentOf(const std::string& path) {
 class EventFileTest : public ::testing::Test {
  protected:
   EventFileTest() { std::remove(path_.c_str()); }
-  const std::string path_ = ::testing::TempDir() + "/events_test.jsonl";
+
+  // A file for each test: tests run at the same time, each in a process of its own.
+  const std::string path_ = absl::StrCat(
+      testing::TempDir(), "/events_test.",
+      testing::UnitTest::GetInstance()->current_test_info()->name(), ".jsonl");
 };
 
 TEST_F(EventFileTest, ALineAnEventWithItsPlaceAndEnergy) {
