@@ -10,7 +10,7 @@
 
 #include "cleave/v1/scene.pb.h"
 #include "client/cpp/client.h"
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 

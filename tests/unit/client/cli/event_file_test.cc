@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <fstream>
 #include <iterator>
 
-#include "absl/strings/str_cat.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -43,12 +42,8 @@ std::string ContentOf(const std::string& path) {
 
 class EventFileTest : public ::testing::Test {
  protected:
-  EventFileTest() { std::remove(path_.c_str()); }
-
-  // A file for each test: tests run at the same time, each in a process of its own.
-  const std::string path_ = absl::StrCat(
-      testing::TempDir(), "/events_test.",
-      testing::UnitTest::GetInstance()->current_test_info()->name(), ".jsonl");
+  const TemporaryDirectory directory_;
+  const std::string path_ = directory_ / "events.jsonl";
 };
 
 TEST_F(EventFileTest, ALineAnEventWithItsPlaceAndEnergy) {
@@ -80,7 +75,7 @@ TEST_F(EventFileTest, WhatLeadsTheRecordingIsCutWhereverItWasTorn) {
 }
 
 TEST_F(EventFileTest, AFolderThatIsNotThereIsAStatus) {
-  EXPECT_FALSE(EventFile::Open(::testing::TempDir() + "/no/such/events.jsonl", -1).ok());
+  EXPECT_FALSE(EventFile::Open(directory_ / "no/such/events.jsonl", -1).ok());
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "client/cli/child_program.h"
 #include "client/io/series/write_aside.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -44,13 +44,8 @@ TEST(GalleryRuns, AreOfEveryVariantAndPicturedOnce) {
 
 class GalleryFolderTest : public testing::Test {
  protected:
-  GalleryFolderTest() {
-    std::string path = testing::TempDir() + "/gallery-XXXXXX";
-    path_ = mkdtemp(path.data());
-  }
-  ~GalleryFolderTest() override { std::filesystem::remove_all(path_); }
-
-  std::string path_;
+  const TemporaryDirectory directory_;
+  const std::string path_ = directory_.path();
 };
 
 TEST_F(GalleryFolderTest, KeepsRunsOfItsOwnBuildAndSettings) {

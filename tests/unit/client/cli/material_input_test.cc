@@ -2,22 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "absl/strings/str_cat.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::string Written(const std::string& name, const std::string& text) {
-  const std::string path = absl::StrCat(testing::TempDir(), getpid(), ".", name);
-  std::ofstream(path) << text;
-  return path;
-}
 
 std::string MessageOf(const absl::StatusOr<MaterialInput>& input) {
   return std::string(input.status().message());
@@ -32,10 +24,12 @@ TEST(MaterialInput, IsAPresetByName) {
 }
 
 TEST(MaterialInput, IsAMaterialOfASceneByNameOrIndex) {
-  const std::string path = Written("two.scene.textproto",
-                                   "materials { name: \"core\" density: 1 }\n"
-                                   "materials { preset: \"rubber\" density: 2 }\n"
-                                   "fracture { stress: FRACTURE_STRESS_TOTAL }\n");
+  const TemporaryDirectory directory;
+  const std::string path = directory / "two.scene.textproto";
+  WriteBytes(path,
+             "materials { name: \"core\" density: 1 }\n"
+             "materials { preset: \"rubber\" density: 2 }\n"
+             "fracture { stress: FRACTURE_STRESS_TOTAL }\n");
   for (const char* which : {"rubber", "1"}) {
     const auto input = LoadMaterial(path, which);
     ASSERT_TRUE(input.ok()) << input.status();
@@ -52,8 +46,9 @@ TEST(MaterialInput, IsAMaterialOfASceneByNameOrIndex) {
 }
 
 TEST(MaterialInput, IsAFileOfItsOwn) {
-  const std::string path =
-      Written("clay.material.json", "{\n  \"youngs_modulus\": 1e6,\n  \"density\": -1\n}\n");
+  const TemporaryDirectory directory;
+  const std::string path = directory / "clay.material.json";
+  WriteBytes(path, "{\n  \"youngs_modulus\": 1e6,\n  \"density\": -1\n}\n");
   const auto input = LoadMaterial(path, "");
   ASSERT_TRUE(input.ok()) << input.status();
   EXPECT_EQ(input->material.youngs_modulus(), 1e6);

@@ -5,21 +5,16 @@
 #include <filesystem>
 #include <fstream>
 
-#include "absl/strings/str_cat.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
 
 class RunFolderTest : public testing::Test {
  protected:
-  RunFolderTest() {
-    std::filesystem::remove_all(folder_.path());
-    EXPECT_TRUE(folder_.Make().ok());
-  }
-  ~RunFolderTest() override { std::filesystem::remove_all(folder_.path()); }
-  const RunFolder folder_{
-      absl::StrCat(testing::TempDir(), "run_folder_test.",
-                   testing::UnitTest::GetInstance()->current_test_info()->name())};
+  RunFolderTest() { EXPECT_TRUE(folder_.Make().ok()); }
+  const TemporaryDirectory directory_;
+  const RunFolder folder_{directory_ / "run"};
 };
 
 TEST_F(RunFolderTest, EarlierRunIsFoundAgainWithItsScene) {

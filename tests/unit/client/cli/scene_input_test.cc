@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
 #include "google/rpc/error_details.pb.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -17,15 +17,12 @@ using testing::HasSubstr;
 
 class SceneInputTest : public testing::Test {
  protected:
-  SceneInputTest() { std::filesystem::create_directories(folder_); }
-  ~SceneInputTest() override { std::filesystem::remove_all(folder_); }
   std::string Write(const std::string& name, absl::string_view text) {
     std::ofstream(folder_ + "/" + name) << text;
     return folder_ + "/" + name;
   }
-  const std::string folder_ =
-      absl::StrCat(testing::TempDir(), "scene_input_test.",
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryDirectory directory_;
+  const std::string folder_ = directory_.path();
 };
 
 constexpr char kMaterial[] =

@@ -4,13 +4,13 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <memory>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/client.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 
@@ -26,9 +26,7 @@ class FakeServerService : public v1::ServerService::Service {
 class FakeServer {
  public:
   explicit FakeServer(grpc::Service& service) {
-    const std::string address =
-        absl::StrCat("unix:", testing::TempDir(), "fake.", getpid(), ".",
-                     testing::UnitTest::GetInstance()->current_test_info()->name());
+    const std::string address = absl::StrCat("unix:", directory_ / "socket");
     grpc::ServerBuilder builder;
     builder.AddListeningPort(address, grpc::InsecureServerCredentials());
     builder.RegisterService(&service);
@@ -43,6 +41,7 @@ class FakeServer {
   Client& client() { return *client_; }
 
  private:
+  const TemporaryDirectory directory_;
   FakeServerService info_;
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<Client> client_;

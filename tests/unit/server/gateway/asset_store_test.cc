@@ -13,7 +13,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "proto/convert/mesh.h"
 #include "server/gateway/errors.h"
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {

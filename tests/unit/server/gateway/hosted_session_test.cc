@@ -6,7 +6,7 @@
 #include <future>
 
 #include "server/session/config.h"
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {

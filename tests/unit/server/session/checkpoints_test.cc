@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/stream/frame_decoder.h"
 #include "core/stream/stream_header.h"
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -81,8 +81,7 @@ TEST(FrameLogTest, AnIndexTornAtAnyByteLosesOnlyTornRowsAndWritingGoesOn) {
   ASSERT_EQ(index.size(), 5 * kIndexRowBytes);
   for (size_t size = 0; size <= index.size(); ++size) {
     TemporaryDirectory directory;
-    std::filesystem::copy(whole.path(), directory.path(),
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(whole.path(), directory.path(), std::filesystem::copy_options::recursive);
     WriteBytes(directory / "index", index.substr(0, size));
     AppendFrames(directory.path(), static_cast<int64_t>(size / kIndexRowBytes), 6, 1);
     ExpectFrames(directory.path(), 6);
@@ -99,8 +98,7 @@ TEST(FrameLogTest, ASegmentTornAtAnyByteLosesOnlyFramesThatAreNotWhole) {
   const std::string segment = ReadBytes(whole / "00000000.clv");
   for (size_t size = 0; size <= segment.size(); ++size) {
     TemporaryDirectory directory;
-    std::filesystem::copy(whole.path(), directory.path(),
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(whole.path(), directory.path(), std::filesystem::copy_options::recursive);
     WriteBytes(directory / "00000000.clv", segment.substr(0, size));
     const int64_t kept = std::count_if(rows.begin(), rows.end(), [&](const IndexRow& row) {
       return row.offset + row.length <= size;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {

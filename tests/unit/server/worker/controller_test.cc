@@ -4,7 +4,7 @@
 #include <signal.h>
 
 #include "server/control/message_socket.h"
-#include "tests/unit/server/temporary_directory.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -55,9 +55,7 @@ class ControllerTest : public testing::Test {
     EXPECT_TRUE(event.has_status());
     return event.status().state();
   }
-  JournalState Journal() {
-    return SummariseJournal(ReadJournal(directory_ / "journal")->records);
-  }
+  JournalState Journal() { return SummariseJournal(ReadJournal(directory_ / "journal")->records); }
 
   TemporaryDirectory directory_;
   FileDescriptor gateway_;

@@ -18,6 +18,7 @@
 #include "client/io/bake/baked_surface.h"
 #include "core/base/bytes.h"
 #include "tests/unit/client/io/bake/breaking_bar.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -116,9 +117,7 @@ Gltf ParseGlb(const std::string& bytes) {
 class BakeTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    options_.folder = ::testing::TempDir() + "/bake/" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(options_.folder);
+    options_.folder = directory_.path();
     options_.name = "bar";
     BakedMotion motion(mesh_, incidence_, surface_, last_.broken_edges);
     for (int64_t i = 0; i < kFrames; ++i) {
@@ -148,6 +147,7 @@ class BakeTest : public ::testing::Test {
       BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6), last_.broken_edges);
   std::vector<std::vector<Vec3>> points_;  // a frame each, as BakedMotion has them
   std::vector<std::vector<Vec3>> velocities_;
+  const TemporaryDirectory directory_;
   BakeOptions options_;
 };
 

@@ -12,6 +12,7 @@
 #include "client/io/series/write_aside.h"
 #include "core/mesh/incidence.h"
 #include "tests/unit/client/io/export/vtu_reader.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -54,9 +55,7 @@ FrameSource FlyingTip(const TetMesh& mesh) {
 class ExportSeriesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    options_.folder = ::testing::TempDir() + "/export/" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::remove_all(options_.folder);
+    options_.folder = directory_.path();
     options_.name = "run";
   }
 
@@ -73,6 +72,7 @@ class ExportSeriesTest : public ::testing::Test {
   }
 
   const TetMesh mesh_ = TwoTets();
+  const TemporaryDirectory directory_;
   ExportOptions options_;
 };
 

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <google/protobuf/text_format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -19,6 +18,7 @@
 #include "client/io/impurity/ply_points.h"
 #include "client/io/mesh/vtu.h"
 #include "client/io/preview/image.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -158,14 +158,10 @@ TEST(ParseVtuPointArray, ReadsOneArray) {
 class LayerFiles : public ::testing::Test {
  protected:
   LayerFiles() {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("layer_files_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
     Write("bar.png", *EncodePng(Bar()));
     Write("blank.png", *EncodePng(Image(8, 8)));
     Write("worn.ply", kPly);
   }
-  ~LayerFiles() override { std::filesystem::remove_all(folder_); }
   void Write(const char* name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
@@ -174,7 +170,8 @@ class LayerFiles : public ::testing::Test {
     return ReadLayerFiles(folder_.string(), impurities_);
   }
 
-  std::filesystem::path folder_;
+  const TemporaryDirectory directory_;
+  const std::filesystem::path folder_ = directory_.path();
   v1::Impurities impurities_;
 };
 

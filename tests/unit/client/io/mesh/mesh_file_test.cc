@@ -2,15 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zstd.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "absl/strings/str_cat.h"
 #include "client/io/mesh/file_bytes.h"
 #include "tests/unit/client/io/mesh/sample_files.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -57,21 +53,16 @@ TEST(MeshFile, BundledSpecimenHasItsThreeParts) {
   EXPECT_EQ(mesh->regions[2].name, "grip_right");
 }
 
-// A folder of its own that goes with the test.
 class MeshFileOnDisk : public ::testing::Test {
  protected:
-  MeshFileOnDisk() : folder_(absl::StrCat(::testing::TempDir(), "/mesh_file_test_", getpid())) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~MeshFileOnDisk() override { std::filesystem::remove_all(folder_); }
   std::string Write(absl::string_view name, absl::string_view bytes) const {
-    const std::string path = absl::StrCat(folder_, "/", name);
-    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<long>(bytes.size()));
+    const std::string path = directory_ / std::string(name);
+    WriteBytes(path, std::string(bytes));
     return path;
   }
 
  private:
-  const std::string folder_;
+  const TemporaryDirectory directory_;
 };
 
 TEST_F(MeshFileOnDisk, EitherTetGenFileLeadsToBoth) {

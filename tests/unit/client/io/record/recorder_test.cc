@@ -7,9 +7,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "absl/strings/str_cat.h"
 #include "client/io/record/recording.h"
 #include "core/stream/frame_encoder.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -37,7 +37,6 @@ class RecorderTest : public testing::Test {
       frames_.push_back(encoder.Encode(frame).value().bytes);
     }
   }
-  ~RecorderTest() override { std::filesystem::remove(path_); }
 
   // Records the frames from the file's last on, up to `last`.
   absl::Status Record(int last, bool finish) {
@@ -57,9 +56,8 @@ class RecorderTest : public testing::Test {
     return bytes.str();
   }
 
-  const std::string path_ =
-      absl::StrCat(testing::TempDir(), "recorder_test.",
-                   testing::UnitTest::GetInstance()->current_test_info()->name(), ".clv");
+  const TemporaryDirectory directory_;
+  const std::string path_ = directory_ / "recorder_test.clv";
   std::vector<Vec3> rest_;
   std::string header_;
   std::vector<std::string> frames_;

@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "tests/unit/client/io/scene/full_scene.h"
+#include "tests/unit/temporary_directory.h"
 
 namespace cleave {
 namespace {
@@ -133,16 +134,13 @@ TEST(SceneFile, MeshFileIsBesideTheSceneFile) {
 
 class SceneFileOnDisk : public testing::Test {
  protected:
-  SceneFileOnDisk() { std::filesystem::create_directories(folder_); }
-  ~SceneFileOnDisk() override { std::filesystem::remove_all(folder_); }
   std::string Write(const std::string& name, absl::string_view text) {
     const std::string path = absl::StrCat(folder_, "/", name);
     std::ofstream(path, std::ios::binary) << text;
     return path;
   }
-  const std::string folder_ =
-      absl::StrCat(testing::TempDir(), "scene_file_test.",
-                   testing::UnitTest::GetInstance()->current_test_info()->name());
+  const TemporaryDirectory directory_;
+  const std::string folder_ = directory_.path();
 };
 
 TEST_F(SceneFileOnDisk, NameDecidesTheFormat) {

@@ -5,13 +5,16 @@
 
 #include <filesystem>
 
+#include "tests/unit/temporary_directory.h"
+
 namespace cleave {
 namespace {
 
 using ::testing::HasSubstr;
 
 TEST(WriteAside, LeavesOnlyTheWholeFile) {
-  const std::string folder = ::testing::TempDir() + "/write_aside/deep/er";
+  const TemporaryDirectory directory;
+  const std::string folder = directory / "deep/er";
   ASSERT_TRUE(MakeDirectories(folder).ok());
   const std::string path = folder + "/file";
   ASSERT_TRUE(WriteAside(path, "first and long").ok());

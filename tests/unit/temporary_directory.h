@@ -1,5 +1,5 @@
-#ifndef CLEAVE_TESTS_UNIT_SERVER_TEMPORARY_DIRECTORY_H_
-#define CLEAVE_TESTS_UNIT_SERVER_TEMPORARY_DIRECTORY_H_
+#ifndef CLEAVE_TESTS_UNIT_TEMPORARY_DIRECTORY_H_
+#define CLEAVE_TESTS_UNIT_TEMPORARY_DIRECTORY_H_
 
 #include <stdlib.h>
 
@@ -43,4 +43,4 @@ inline void WriteBytes(const std::string& path, const std::string& bytes) {
 
 }  // namespace cleave
 
-#endif  // CLEAVE_TESTS_UNIT_SERVER_TEMPORARY_DIRECTORY_H_
+#endif  // CLEAVE_TESTS_UNIT_TEMPORARY_DIRECTORY_H_
