@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "absl/synchronization/notification.h"
 #include "core/stream/frame_encoder.h"
 #include "tests/unit/client/cpp/fake_server.h"
 
@@ -43,7 +46,7 @@ class FakeFrames : public v1::FrameService::Service {
     }
   }
 
-  grpc::Status StreamFrames(grpc::ServerContext* context, const v1::StreamFramesRequest* request,
+  grpc::Status StreamFrames(grpc::ServerContext*, const v1::StreamFramesRequest* request,
                             grpc::ServerWriter<v1::StreamFramesResponse>* writer) override {
     ++streams;
     if (refusals > 0) {
@@ -82,8 +85,7 @@ class FakeFrames : public v1::FrameService::Service {
         writer->Write(message);
       }
     }
-    while (request->follow() && !context->IsCancelled())
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (request->follow()) viewer_left.WaitForNotification();
     if (end_cleanly) {
       message.mutable_end()->set_last_frame(last);
       message.mutable_end()->set_reason(v1::END_REASON_GOAL_REACHED);
@@ -101,6 +103,7 @@ class FakeFrames : public v1::FrameService::Service {
   bool can_resume = true;
   bool heartbeat = true;
   bool end_cleanly = true;
+  absl::Notification viewer_left;  // what ends a stream that follows
   int streams = 0;
 };
 
@@ -223,6 +226,7 @@ TEST(FrameStream, CancelFromAnotherThreadEndsAWaitingStream) {
     if (last == kFrames - 1) canceller = std::thread([&] { stream.Cancel(); });
   }
   canceller.join();
+  service.viewer_left.Notify();
   EXPECT_EQ(last, kFrames - 1);
   EXPECT_TRUE(absl::IsCancelled(status)) << status;
 }
