@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cpp/rpc_error.h"
 #include "core/base/status.h"
+#include "proto/convert/rung.h"
 
 namespace cleave {
 namespace {
@@ -56,6 +57,9 @@ absl::Status FrameStream::Connect() {
   request.set_follow(options_.follow);
   request.set_events(options_.events);
   if (options_.stop_frame.has_value()) request.set_stop_frame(*options_.stop_frame);
+  if (options_.tolerance.has_value()) request.set_tolerance(*options_.tolerance);
+  if (options_.rung.has_value()) request.set_rung(RungMessage(options_.rung));
+  request.set_latest(options_.latest);
   if (position_.has_value()) {
     request.set_first_frame(position_->frame + 1);
     request.mutable_resume()->set_epoch(position_->epoch);
@@ -102,6 +106,8 @@ absl::Status FrameStream::Connect() {
   start_ = std::move(*response.mutable_start());
   return absl::OkStatus();
 }
+
+std::optional<Rung> FrameStream::rung() const { return RungFromMessage(start_->rung()); }
 
 absl::Status FrameStream::Recover(const absl::Status& why) {
   Disconnect();

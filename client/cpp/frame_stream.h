@@ -21,6 +21,7 @@
 #include "client/cpp/client.h"
 #include "core/stream/frame_decoder.h"
 #include "core/stream/frame_header.h"
+#include "core/stream/rungs.h"
 
 namespace cleave {
 
@@ -39,6 +40,11 @@ struct FrameStreamOptions {
   std::optional<int64_t> stop_frame;  // last frame wanted; absent: until the run's goal
   bool follow = false;                // stay when the goal is reached, until Cancel
   bool events = false;                // also what broke: StreamedFrame::events
+  // The largest error of a coordinate that will do, as a rung or in metres (one of the two);
+  // neither: what the session keeps. rung() and tolerance() tell what is given.
+  std::optional<Rung> rung;
+  std::optional<double> tolerance;
+  bool latest = false;  // leave out what is before the newest key frame, where behind
   // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder(). With them
   // its edges (Incidence::edges).
   std::optional<std::vector<Vec3>> rest_positions;
@@ -77,6 +83,9 @@ class FrameStream {
   // Valid after Open.
   const std::string& header_bytes() const { return start_->header(); }
   const std::string& mesh_asset() const { return start_->mesh_asset(); }
+  // What is given: absent where it is no rung's; largest error of a coordinate, m.
+  std::optional<Rung> rung() const;
+  double tolerance() const { return start_->tolerance(); }
   // Newest committed frame that the server told of.
   int64_t head_frame() const { return head_frame_; }
   // The last frame that Next gave (or `resume`).

@@ -81,6 +81,12 @@ double QuantisationStep(double tolerance, double domain_bound) {
 
 double StreamHeader::step() const { return QuantisationStep(tolerance, domain_bound); }
 
+double StreamHeader::diagonal() const {
+  double length = 0;
+  for (int axis = 0; axis < 3; ++axis) length = std::hypot(length, bbox_max[axis] - bbox_min[axis]);
+  return length;
+}
+
 double StreamHeader::UnitOf(double frame_tolerance) const {
   const double step = QuantisationStep(frame_tolerance, domain_bound);
   return predictor_id == kPredictorInterpolation ? step / kUnitsPerStep : step;
@@ -123,14 +129,11 @@ std::string RestPositionsSha256(std::span<const Vec3> rest_positions) {
 void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameters) {
   const absl::StatusOr<StreamHeader> header = MakeStreamHeader(parameters, rest_positions);
   if (!header.ok()) return;  // for its maker to report
-  double diagonal = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    diagonal = std::hypot(diagonal, header->bbox_max[axis] - header->bbox_min[axis]);
-  }
   StreamHeader finer = *header;
   finer.predictor_id = kPredictorInterpolation;
   const double reach = finer.UnitOf(finer.tolerance) * kMaxQuantised;
-  const bool reaches = reach >= 256 * diagonal && CheckTolerance(finer.tolerance, finer).ok();
+  const bool reaches =
+      reach >= 256 * finer.diagonal() && CheckTolerance(finer.tolerance, finer).ok();
   parameters.predictor_id = reaches ? kPredictorInterpolation : kPredictorTemporal;
   parameters.coder_id = reaches ? kCoderContextRans : kCoderZstdPlanes;
 }
@@ -164,12 +167,9 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
       header.bbox_max[axis] = std::max(header.bbox_max[axis], x);
     }
   }
-  double diagonal = 0;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (int axis = 0; axis < 3; ++axis)
     header.origin[axis] = 0.5 * header.bbox_min[axis] + 0.5 * header.bbox_max[axis];
-    diagonal = std::hypot(diagonal, header.bbox_max[axis] - header.bbox_min[axis]);
-  }
-  if (header.tolerance == 0) header.tolerance = diagonal > 0 ? 1e-4 * diagonal : 1e-4;
+  if (header.tolerance == 0) header.tolerance = RungTolerance(parameters.rung, header.diagonal());
   const double farthest = Farthest(header);
   const double affordable = header.tolerance * 0x1p20;
   if (farthest <= affordable) {

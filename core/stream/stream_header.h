@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "core/base/vec3.h"
+#include "core/stream/rungs.h"
 #include "core/stream/stream_mesh.h"
 
 namespace cleave {
@@ -52,6 +53,7 @@ struct StreamHeader {
   // The grid on which positions lie: a coordinate is origin + integer * unit. For predictor 1 the
   // unit is a step, for predictor 2 a 64th of one.
   double step() const;
+  double diagonal() const;  // m, of the rest bounding box
   double UnitOf(double tolerance) const;
 };
 
@@ -60,7 +62,8 @@ struct StreamParameters {
   std::string mesh_sha256;  // 32 raw bytes
   uint64_t edge_count = 0;  // Incidence::edge_count()
   uint64_t tet_count = 0;
-  double tolerance = 0;             // m; 0: 1e-4 of the rest bounding box's diagonal
+  double tolerance = 0;  // m; 0: that of `rung`
+  Rung rung = Rung::kStandard;
   uint32_t keyframe_interval = 24;  // frames, [1, 1e6]
   double frames_per_second = 24;    // [1e-3, 1e9]
   uint32_t chunk_nodes = 16384;     // [1, 65536]; 16384 keeps every section below 256 KiB

@@ -44,9 +44,13 @@ HostedSession::HostedSession(SessionPaths paths, worker::v1::SessionConfig confi
       frames_(paths_.frames()) {}
 
 absl::Status HostedSession::Load() {
+  rungs_ = std::make_shared<RungEncoders>(paths_, options_.program, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->OnRungsChanged();
+  });
   CLEAVE_ASSIGN_OR_RETURN(const JournalContents contents, ReadJournal(paths_.journal()));
   const JournalState journal = SummariseJournal(contents.records);
   CLEAVE_RETURN_IF_ERROR(frames_.Refresh(std::numeric_limits<int64_t>::max()));
+  rungs_->Committed(frames_.head());
   const std::lock_guard lock(mutex_);
   status_.set_state(journal.failure ? v1::SESSION_STATE_FAILED : v1::SESSION_STATE_IDLE);
   if (journal.failure) *status_.mutable_error() = journal.failure->error();
@@ -79,6 +83,7 @@ v1::Session HostedSession::View(bool with_scene) const {
   if (status_.state() == v1::SESSION_STATE_FAILED) *view.mutable_error() = status_.error();
   *view.mutable_progress() = status_.progress();
   view.set_viewer_count(static_cast<uint32_t>(viewers_));
+  view.set_rung(config_.rung());
   return view;
 }
 
@@ -184,19 +189,17 @@ void HostedSession::Pause(bool abort_step, Done done) {
 }
 
 void HostedSession::Delete(std::function<void()> removable) {
+  rungs_->End(/*at_once=*/true);
   std::shared_ptr<WorkerProcess> worker;
   {
     const std::lock_guard lock(mutex_);
     deleted_ = true;
     worker = worker_;
-    if (worker != nullptr) removable_ = removable;
+    if (!EndedLocked()) removable_.swap(removable);
   }
   Notify();
-  if (worker != nullptr) {
-    worker->Kill();
-  } else {
-    removable();
-  }
+  if (worker != nullptr) worker->Kill();
+  if (removable) removable();
 }
 
 void HostedSession::Shutdown() {
@@ -207,12 +210,14 @@ void HostedSession::Shutdown() {
     worker = worker_;
   }
   if (worker != nullptr) worker->Quit();
+  rungs_->End(/*at_once=*/false);
 }
 
-bool HostedSession::WaitForWorker(std::chrono::steady_clock::time_point deadline) {
+bool HostedSession::WaitForWorkers(std::chrono::steady_clock::time_point deadline) {
   std::unique_lock lock(mutex_);
-  if (worker_ended_.wait_until(lock, deadline, [this] { return worker_ == nullptr; })) return true;
-  worker_->Kill();
+  if (workers_ended_.wait_until(lock, deadline, [this] { return EndedLocked(); })) return true;
+  if (worker_ != nullptr) worker_->Kill();
+  rungs_->End(/*at_once=*/true);
   return false;
 }
 
@@ -234,7 +239,19 @@ void HostedSession::OnStatus(const worker::v1::Status& status) {
     status_.set_goal_frame(goal);
     *status_.mutable_progress() = progress;
   }
+  rungs_->Committed(status.head_frame());
   Notify();
+}
+
+void HostedSession::OnRungsChanged() {
+  std::function<void()> removable;
+  {
+    const std::lock_guard lock(mutex_);
+    if (EndedLocked()) removable.swap(removable_);
+    workers_ended_.notify_all();
+  }
+  Notify();
+  if (removable) removable();
 }
 
 void HostedSession::OnExit(const std::string& how) {
@@ -242,12 +259,12 @@ void HostedSession::OnExit(const std::string& how) {
   {
     const std::lock_guard lock(mutex_);
     worker_.reset();
-    worker_ended_.notify_all();
+    workers_ended_.notify_all();
     Log(shutting_down_ || deleted_ ? LogLevel::kInfo : LogLevel::kWarning, "worker_ended",
         {{"session", config_.session_id()},
          {"how", how},
          {"head", absl::StrCat(status_.head_frame())}});
-    removable.swap(removable_);
+    if (EndedLocked()) removable.swap(removable_);
     if (!deleted_ && !shutting_down_ && Works(status_.state())) {
       absl::Status status = absl::AbortedError("it ended without a new frame too often");
       if (restarts_++ < kMaxRestarts) status = StartWorkerLocked();

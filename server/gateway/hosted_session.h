@@ -14,6 +14,7 @@
 #include "cleave/v1/session.pb.h"
 #include "cleave/worker/v1/control.pb.h"
 #include "cleave/worker/v1/records.pb.h"
+#include "server/gateway/rung_encoders.h"
 #include "server/gateway/worker_process.h"
 #include "server/session/frame_log.h"
 #include "server/session/session_paths.h"
@@ -44,6 +45,8 @@ class HostedSession : public std::enable_shared_from_this<HostedSession> {
   const worker::v1::SessionConfig& config() const { return config_; }
   std::string name() const { return "sessions/" + config_.session_id(); }
   FrameLogReader& frames() { return frames_; }
+  // Coarser encodings of the frames. Precondition: Load.
+  RungEncoders& rungs() { return *rungs_; }
 
   // What others decide by.
   struct State {
@@ -66,27 +69,29 @@ class HostedSession : public std::enable_shared_from_this<HostedSession> {
   // rests.
   void Pause(bool abort_step, Done done);
 
-  // Ends the worker by force; `removable` is called once nobody writes to the directory any more.
+  // Ends the workers by force; `removable` is called once nobody writes to the directory any more.
   void Delete(std::function<void()> removable);
-  // Lets the worker save and exit, and starts no other.
+  // Lets its workers save and exit, and starts no others.
   void Shutdown();
-  // Waits for the worker's end; false, and ends it by force, when it has not ended by `deadline`.
-  bool WaitForWorker(std::chrono::steady_clock::time_point deadline);
+  // Waits for the workers' end; false, and ends them by force, when some have not by `deadline`.
+  bool WaitForWorkers(std::chrono::steady_clock::time_point deadline);
 
-  // Calls `changed` after every change of state(), from any thread, with no lock held; it must
-  // return at once. After Forget returned, a call may still be under way.
+  // Calls `changed` after every change of state() and of a rung's, from any thread, with no lock
+  // held; it must return at once. After Forget returned, a call may still be under way.
   ObserverId Observe(std::function<void()> changed);
   void Forget(ObserverId observer);
 
   void AddViewer(int count);
 
  private:
-  // Both need mutex_.
+  // All need mutex_.
   absl::Status StartWorkerLocked();
   std::shared_ptr<WorkerProcess> WorkerLocked(absl::Status& status);
+  bool EndedLocked() const { return worker_ == nullptr && rungs_->ended(); }
 
   void OnStatus(const worker::v1::Status& status);
   void OnExit(const std::string& how);
+  void OnRungsChanged();
   void OnRunAcknowledged(const v1::RunGoal& goal, const absl::Status& status);
   void Notify();
 
@@ -94,9 +99,10 @@ class HostedSession : public std::enable_shared_from_this<HostedSession> {
   const worker::v1::SessionConfig config_;
   const WorkerOptions& options_;
   FrameLogReader frames_;
+  std::shared_ptr<RungEncoders> rungs_;
 
   mutable std::mutex mutex_;
-  std::condition_variable worker_ended_;
+  std::condition_variable workers_ended_;
   worker::v1::Status status_;
   std::shared_ptr<WorkerProcess> worker_;
   int runs_in_flight_ = 0;   // sent, not acknowledged

@@ -52,6 +52,11 @@ Faults CheckRequest(const v1::CreateSessionRequest& request) {
   if (request.threads() < 0 || request.threads() > kMaxThreads) {
     faults.Error("threads", absl::StrCat(request.threads(), " is outside [0, ", kMaxThreads, "]"));
   }
+  if (!v1::Rung_IsValid(request.rung())) {
+    faults.Error("rung", absl::StrCat(static_cast<int>(request.rung()), " is no rung"));
+  } else if (request.rung() != v1::RUNG_UNSPECIFIED && request.scene().output().has_tolerance()) {
+    faults.Error("rung", "scene.output.tolerance says what the session keeps; leave one out");
+  }
   return faults;
 }
 
@@ -139,9 +144,12 @@ absl::StatusOr<std::shared_ptr<HostedSession>> SessionStore::FindEarlier(
   if (seen != requests_.end()) return sessions_.at(seen->second);
   const auto existing = sessions_.find(request.session_id());
   if (existing == sessions_.end()) return nullptr;
-  if (existing->second->config().scene_sha256() == scene_sha256) return existing->second;
+  const worker::v1::SessionConfig& config = existing->second->config();
+  const bool same_scene = config.scene_sha256() == scene_sha256;
+  if (same_scene && config.rung() == request.rung()) return existing->second;
   return MakeError(absl::StatusCode::kAlreadyExists, "SESSION_EXISTS",
-                   absl::StrCat(existing->second->name(), " exists with another scene"),
+                   absl::StrCat(existing->second->name(), " exists with another ",
+                                same_scene ? "rung" : "scene"),
                    {{"session", existing->second->name()}});
 }
 
@@ -193,6 +201,7 @@ absl::StatusOr<v1::CreateSessionResponse> SessionStore::CreateReserved(
   config.set_threads(request.threads());
   config.set_request_id(request.request_id());
   config.set_scene_sha256(scene_sha256);
+  config.set_rung(request.rung());
 
   const std::string scratch = ScratchPath(directory_);
   const std::string root = absl::StrCat(directory_, "/", request.session_id());
@@ -290,7 +299,7 @@ bool SessionStore::WaitForWorkers(std::chrono::milliseconds timeout) {
   }
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   bool all_ended = true;
-  for (const auto& session : sessions) all_ended &= session->WaitForWorker(deadline);
+  for (const auto& session : sessions) all_ended &= session->WaitForWorkers(deadline);
   return all_ended;
 }
 

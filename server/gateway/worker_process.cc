@@ -33,6 +33,10 @@ absl::StatusOr<pid_t> Spawn(const WorkerProcess::Options& options, const FileDes
     words.push_back("--threads");
     words.push_back(absl::StrCat(options.threads));
   }
+  if (options.rung.has_value()) {
+    words.push_back("--rung");
+    words.push_back(std::string(RungName(*options.rung)));
+  }
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -78,8 +82,8 @@ void WorkerProcess::Send(worker::v1::Command command, Done done) {
   {
     const std::lock_guard lock(mutex_);
     command.set_sequence(++last_sequence_);
-    status = ended_ ? absl::UnavailableError("the worker has ended")
-                    : SendMessage(socket_, command);
+    status =
+        ended_ ? absl::UnavailableError("the worker has ended") : SendMessage(socket_, command);
     if (status.ok()) unacknowledged_.emplace(command.sequence(), std::move(done));
   }
   if (!status.ok()) done(status);

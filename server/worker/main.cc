@@ -5,16 +5,22 @@
 #include <sys/socket.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/string_view.h"
+#include "cleave/worker/v1/control.pb.h"
 #include "core/base/status.h"
+#include "core/stream/rungs.h"
+#include "server/control/message_socket.h"
+#include "server/files/durable_file.h"
 #include "server/session/journal.h"
 #include "server/session/owner_lock.h"
 #include "server/session/session_paths.h"
@@ -22,17 +28,20 @@
 #include "server/worker/failure.h"
 #include "server/worker/recorded_simulation.h"
 #include "server/worker/run_loop.h"
+#include "server/worker/rung_log.h"
+#include "server/worker/rung_loop.h"
 #include "server/worker/session_inputs.h"
 
 namespace cleave {
 namespace {
 
 constexpr char kUsage[] =
-    R"(cleave-worker DIRECTORY [--threads T] [--control-fd N]
+    R"(cleave-worker DIRECTORY [--rung RUNG] [--threads T] [--control-fd N]
 
 Simulates the session in DIRECTORY up to its scene's frame count and exits. Started again on the
 same directory it goes on behind the last committed frame. SIGTERM and SIGINT save and exit.
 
+  --rung RUNG      encode the frames that are there more coarsely (preview, standard) instead
   --threads T      threads to use; without it what the session says, else all of the machine
   --control-fd N   take commands from this socket instead (the gateway does so)
 )";
@@ -41,6 +50,7 @@ struct Arguments {
   std::string directory;
   int threads = 0;
   int control_fd = -1;
+  std::optional<Rung> rung;
 };
 
 bool ParseArguments(int argc, char** argv, Arguments& arguments) {
@@ -49,7 +59,11 @@ bool ParseArguments(int argc, char** argv, Arguments& arguments) {
     int* number = argument == "--threads"      ? &arguments.threads
                   : argument == "--control-fd" ? &arguments.control_fd
                                                : nullptr;
-    if (number != nullptr) {
+    if (argument == "--rung") {
+      if (++i == argc) return false;
+      arguments.rung = ParseRung(argv[i]);
+      if (!arguments.rung.has_value()) return false;
+    } else if (number != nullptr) {
       if (++i == argc || !absl::SimpleAtoi(argv[i], number) || *number < 0) return false;
     } else if (arguments.directory.empty() && argument.substr(0, 1) != "-") {
       arguments.directory = std::string(argument);
@@ -83,6 +97,37 @@ absl::Status Simulate(const SessionPaths& paths, const Arguments& arguments, Con
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<RecordedSimulation> session,
                           RecordedSimulation::Open(paths, std::move(inputs), threads));
   return RunSession(*session, control, batch);
+}
+
+absl::Status FollowSession(const SessionPaths& paths, const Arguments& arguments,
+                           const FileDescriptor& control) {
+  CLEAVE_RETURN_IF_ERROR(MakeDirectory(paths.rungs()));
+  CLEAVE_ASSIGN_OR_RETURN(const OwnerLock lock,
+                          WaitForLock(paths.rung_owner(*arguments.rung), control));
+  CLEAVE_ASSIGN_OR_RETURN(const SessionInputs inputs, LoadSessionInputs(paths));
+  // One thread unless told otherwise: the cores are the simulation's.
+  const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<size_t>(std::max(1, arguments.threads)));
+  CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<RungLog> log,
+                          RungLog::Open(paths, inputs, *arguments.rung));
+  return EncodeRung(*log, control);
+}
+
+absl::Status WorkOnRung(const Arguments& arguments) {
+  const FileDescriptor control(arguments.control_fd);
+  absl::Status status;
+  try {
+    status = FollowSession({arguments.directory}, arguments, control);
+  } catch (const std::bad_alloc&) {
+    status = absl::InternalError("the machine has not enough memory for this rung");
+  }
+  if (!status.ok() && control.valid()) {
+    worker::v1::Event event;
+    event.mutable_status()->set_state(v1::SESSION_STATE_FAILED);
+    *event.mutable_status()->mutable_error() = FailureOf(status);
+    SendMessage(control, event).IgnoreError();
+  }
+  return status;
 }
 
 absl::Status Work(const Arguments& arguments) {
@@ -125,7 +170,8 @@ int main(int argc, char** argv) {
   sigaddset(&signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  const absl::Status status = cleave::Work(arguments);
+  const absl::Status status =
+      arguments.rung.has_value() ? cleave::WorkOnRung(arguments) : cleave::Work(arguments);
   if (status.ok()) return 0;
   std::fprintf(stderr, "cleave-worker: %s: %s\n", arguments.directory.c_str(),
                status.ToString().c_str());

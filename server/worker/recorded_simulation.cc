@@ -25,6 +25,7 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
   parameters.edge_count = recorded->edges_.size();
   parameters.tet_count = static_cast<uint64_t>(inputs.mesh.tet_count());
   parameters.tolerance = scene.output.tolerance.value_or(0);
+  parameters.rung = inputs.rung.value_or(Rung::kStandard);
   parameters.keyframe_interval = static_cast<uint32_t>(scene.output.keyframe_interval);
   parameters.frames_per_second = scene.timing.frames_per_second;
   recorded->rest_positions_ = inputs.mesh.rest_positions;

@@ -11,6 +11,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/scene/validate.h"
 #include "proto/convert/mesh.h"
+#include "proto/convert/rung.h"
 #include "proto/convert/scene.h"
 #include "server/files/durable_file.h"
 #include "server/session/config.h"
@@ -26,6 +27,7 @@ absl::StatusOr<SessionInputs> LoadSessionInputs(const SessionPaths& paths) {
   CLEAVE_ASSIGN_OR_RETURN(const worker::v1::SessionConfig config, ReadSessionConfig(paths));
   SessionInputs inputs;
   inputs.threads = config.threads();
+  inputs.rung = RungFromMessage(config.rung());
   Faults faults;
   inputs.scene = SceneFromMessage(config.scene(), faults);
   faults.Append("", ValidateScene(inputs.scene));

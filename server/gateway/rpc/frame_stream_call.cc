@@ -6,6 +6,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
+#include "core/stream/stream_header.h"
+#include "proto/convert/rung.h"
 #include "server/gateway/errors.h"
 #include "server/gateway/rpc/status.h"
 
@@ -17,6 +19,11 @@ constexpr uint32_t kMinChunkBytes = 16 << 10;
 constexpr uint32_t kMaxChunkBytes = 1 << 20;
 constexpr std::chrono::seconds kHeartbeat{5};
 constexpr int kEventsPerMessage = 1000;  // edges below 200 KB; a split has all of its parts
+
+absl::Status Deleted(const HostedSession& session) {
+  return MakeError(absl::StatusCode::kNotFound, "SESSION_NOT_FOUND",
+                   absl::StrCat(session.name(), " was deleted"));
+}
 
 }  // namespace
 
@@ -33,6 +40,7 @@ void FrameStreamCall::OnCancel() {
 
 void FrameStreamCall::OnDone() {
   if (session() != nullptr) session()->AddViewer(-1);
+  if (rung_.has_value()) session()->rungs().RemoveViewer(*rung_);
   Close();
 }
 
@@ -45,7 +53,7 @@ void FrameStreamCall::Step() {
   if (ended_) return Answer(absl::OkStatus());
   // Head and activity in one look: a session that rests has no frame beyond this head.
   const HostedSession::State state = session()->state();
-  absl::Status status = session()->frames().Refresh(state.head_frame);
+  absl::Status status = Refresh(state);
   if (status.ok()) status = Continue(state);
   if (!status.ok()) Answer(status);
 }
@@ -63,6 +71,12 @@ absl::Status FrameStreamCall::CheckRequest() const {
   if (request_.has_stop_frame() && request_.stop_frame() < 0) {
     faults.Error("stop_frame", absl::StrCat(request_.stop_frame(), " is negative"));
   }
+  if (request_.has_tolerance() && !(request_.tolerance() > 0)) {
+    faults.Error("tolerance", absl::StrCat(request_.tolerance(), " m is not above 0"));
+  }
+  if (request_.has_rung() && !v1::Rung_IsValid(request_.rung())) {
+    faults.Error("rung", absl::StrCat(static_cast<int>(request_.rung()), " is no rung"));
+  }
   return faults.ok() ? absl::OkStatus() : MakeBadRequest("PARAM_OUT_OF_RANGE", "", faults);
 }
 
@@ -74,6 +88,20 @@ absl::Status FrameStreamCall::Begin() {
   if (request_.events()) event_log_.emplace(session->paths().events());
   Attach(std::move(session));
   return absl::OkStatus();
+}
+
+absl::Status FrameStreamCall::Refresh(const HostedSession::State& state) {
+  CLEAVE_RETURN_IF_ERROR(session()->frames().Refresh(state.head_frame));
+  head_ = session()->frames().head();
+  if (!rung_.has_value()) return absl::OkStatus();
+  const RungEncoders::State rung = session()->rungs().state(*rung_);
+  head_ = std::min(head_, rung.head_frame);
+  if (head_ < session()->frames().head() && !rung.failure.ok()) {
+    return MakeError(absl::StatusCode::kInternal, "RUNG_FAILED",
+                     absl::StrCat("the rung ", RungName(*rung_), " of ", session()->name(),
+                                  " ends at frame ", head_, ": ", rung.failure.message()));
+  }
+  return frames().Refresh(head_);
 }
 
 absl::Status FrameStreamCall::Continue(const HostedSession::State& state) {
@@ -91,29 +119,33 @@ absl::Status FrameStreamCall::Continue(const HostedSession::State& state) {
     SendChunk(state.head_frame);
   } else if (request_.has_stop_frame() && next_frame_ > request_.stop_frame()) {
     SendEnd(v1::END_REASON_STOP_FRAME, "");
-  } else if (next_frame_ <= session()->frames().head()) {
+  } else if (SkipToNewestKeyframe()) {
+    return absl::OkStatus();
+  } else if (next_frame_ <= head_) {
     CLEAVE_RETURN_IF_ERROR(LoadNextFrame());
     return Continue(state);
+  } else if (head_ < session()->frames().head()) {
+    Rest(state);  // the rung is on its way there
   } else if (state.state == v1::SESSION_STATE_FAILED && !state.active) {
     SendEnd(v1::END_REASON_FAILED, absl::StrCat(state.error.reason(), ": ", state.error.message()));
   } else if (!state.active && !request_.follow()) {
     SendEnd(v1::END_REASON_GOAL_REACHED, "");
-  } else if (Executor::Clock::now() - last_write_ >= kHeartbeat) {
-    message_.mutable_heartbeat()->set_head_frame(state.head_frame);
-    Send();
   } else {
-    WakeAt(last_write_ + kHeartbeat);
+    Rest(state);
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
-  FrameLogReader& frames = session()->frames();
-  if (frames.head() < 0) {
-    if (state.deleted) {
-      return MakeError(absl::StatusCode::kNotFound, "SESSION_NOT_FOUND",
-                       absl::StrCat(session()->name(), " was deleted"));
-    }
+void FrameStreamCall::Rest(const HostedSession::State& state) {
+  if (Executor::Clock::now() - last_write_ < kHeartbeat) return WakeAt(last_write_ + kHeartbeat);
+  message_.mutable_heartbeat()->set_head_frame(state.head_frame);
+  Send();
+}
+
+absl::StatusOr<bool> FrameStreamCall::Choose(const HostedSession::State& state) {
+  const FrameLogReader& kept = session()->frames();
+  if (kept.head() < 0) {
+    if (state.deleted) return Deleted(*session());
     if (going_down()) return MakeRetryLater("DRAINING", "the server goes down", 2);
     if (state.active) return false;  // its first frame is on the way
     if (state.state == v1::SESSION_STATE_FAILED) {
@@ -124,36 +156,84 @@ absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
     CLEAVE_RETURN_IF_ERROR(session()->StartWorker());
     return false;
   }
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, kept.ReadHeader());
+  CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header, ParseStreamHeader(bytes));
+  double tolerance = header.tolerance;
+  if (request_.has_tolerance()) tolerance = request_.tolerance();
+  const std::optional<Rung> rung = RungFromMessage(request_.rung());
+  if (rung.has_value()) tolerance = RungTolerance(*rung, header.diagonal());
+  const absl::StatusOr<RungChoice> choice = SnapDown(tolerance, header);
+  if (!choice.ok()) {
+    return MakeError(
+        absl::StatusCode::kFailedPrecondition, "FINER_THAN_KEPT",
+        absl::StrCat(request_.has_rung() ? "rung: " : "tolerance: ", choice.status().message(),
+                     "; a session that is created with a finer rung or scene.output.tolerance "
+                     "keeps them"));
+  }
+  choice_ = *choice;
+  if (choice_->as_kept) return true;
+  rung_ = choice_->rung;
+  session()->rungs().AddViewer(*rung_);
+  CLEAVE_RETURN_IF_ERROR(Refresh(state));
+  return true;
+}
+
+absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
+  if (!choice_.has_value()) {
+    CLEAVE_ASSIGN_OR_RETURN(const bool chosen, Choose(state));
+    if (!chosen) return false;
+  }
+  // A rung that is not yet where the viewer wants to begin is on its way there.
+  const int64_t wanted = request_.has_resume() ? request_.resume().frame() : request_.first_frame();
+  const int64_t begin = std::clamp<int64_t>(wanted, 0, session()->frames().head());
+  if (head_ < begin) {
+    if (state.deleted) return Deleted(*session());
+    if (going_down()) return MakeRetryLater("DRAINING", "the server goes down", 2);
+    return false;
+  }
   v1::StreamStart& start = *message_.mutable_start();
   const v1::Resume& resume = request_.resume();
   const std::optional<IndexRow> held =
-      request_.has_resume() ? frames.Find(resume.frame()) : std::nullopt;
+      request_.has_resume() ? frames().Find(resume.frame()) : std::nullopt;
   if (held.has_value() && held->epoch == resume.epoch() &&
       held->state_hash == resume.state_hash()) {
     start.set_resumed(true);
     next_frame_ = held->frame + 1;
   } else {
     // A client that holds something else than this log begins again near where it was.
-    const int64_t wanted = request_.has_resume() ? resume.frame() : request_.first_frame();
-    const std::optional<IndexRow> key =
-        frames.Keyframe(std::clamp<int64_t>(wanted, 0, frames.head()));
+    const std::optional<IndexRow> key = frames().Keyframe(begin);
     if (!key.has_value()) return absl::DataLossError("the frame log has no key frame");
     next_frame_ = key->frame;
   }
-  CLEAVE_ASSIGN_OR_RETURN(*start.mutable_header(), frames.ReadHeader());
+  CLEAVE_ASSIGN_OR_RETURN(*start.mutable_header(), frames().ReadHeader());
+  start.set_rung(RungMessage(choice_->rung));
+  start.set_tolerance(choice_->tolerance);
   start.set_first_frame(next_frame_);
   start.set_mesh_asset(session()->config().scene().mesh().asset());
   Send();
   return true;
 }
 
+bool FrameStreamCall::SkipToNewestKeyframe() {
+  if (!request_.latest() || next_frame_ >= head_) return false;
+  const std::optional<IndexRow> key =
+      frames().Keyframe(request_.has_stop_frame() ? std::min(head_, request_.stop_frame()) : head_);
+  if (!key.has_value() || key->frame <= next_frame_) return false;
+  v1::Gap& gap = *message_.mutable_gap();
+  gap.set_first_frame(next_frame_);
+  gap.set_last_frame(key->frame - 1);
+  next_frame_ = key->frame;
+  Send();
+  return true;
+}
+
 absl::Status FrameStreamCall::LoadNextFrame() {
-  const std::optional<IndexRow> row = session()->frames().Find(next_frame_);
+  const std::optional<IndexRow> row = frames().Find(next_frame_);
   if (!row.has_value()) {
     return MakeError(absl::StatusCode::kOutOfRange, "FRAME_NOT_RETAINED",
                      absl::StrCat("frame ", next_frame_, " is not in the log"));
   }
-  CLEAVE_ASSIGN_OR_RETURN(frame_bytes_, session()->frames().ReadFrame(*row));
+  CLEAVE_ASSIGN_OR_RETURN(frame_bytes_, frames().ReadFrame(*row));
   frame_sent_ = 0;
   if (!event_log_.has_value()) return absl::OkStatus();
   CLEAVE_ASSIGN_OR_RETURN(std::optional<v1::FrameEvents> events, event_log_->Read(next_frame_));

@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "cleave/v1/frame.pb.h"
+#include "core/stream/rungs.h"
 #include "server/gateway/drain.h"
 #include "server/gateway/executor.h"
 #include "server/gateway/rpc/session_call.h"
@@ -18,9 +19,9 @@
 
 namespace cleave {
 
-// One StreamFrames call: reads committed frames from the session's log and sends them in chunks,
-// with one write under way at a time, so that a slow viewer costs one chunk of memory and nobody
-// else any time.
+// One StreamFrames call: reads committed frames from the session's log, or from that of a coarser
+// rung, and sends them in chunks, with one write under way at a time, so that a slow viewer costs
+// one chunk of memory and nobody else any time.
 class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesResponse>,
                               public SessionCall {
  public:
@@ -37,11 +38,24 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   void Step() override;
   absl::Status Begin();
   absl::Status CheckRequest() const;
-  // Chooses the first frame; false while the session has none yet.
+  // Chooses what is sent, from which frame on; false while that is not there yet.
   absl::StatusOr<bool> Start(const HostedSession::State& state);
+  // False while the session has no frame yet.
+  absl::StatusOr<bool> Choose(const HostedSession::State& state);
+  // Takes note of new frames of the log that is sent.
+  absl::Status Refresh(const HostedSession::State& state);
+  // Of the log that is sent.
+  FrameLogReader& frames() {
+    return rung_ ? session()->rungs().frames(*rung_) : session()->frames();
+  }
   // Sends the next piece of what is due.
   absl::Status Continue(const HostedSession::State& state);
   absl::Status LoadNextFrame();
+  // Where the viewer wants to be at the newest and is behind: leaves out what is before the newest
+  // key frame, and says so.
+  bool SkipToNewestKeyframe();
+  // Nothing is due: a heartbeat now and then.
+  void Rest(const HostedSession::State& state);
   void SendEvents();
   void SendChunk(int64_t head_frame);
   void SendEnd(v1::EndReason reason, const std::string& message);
@@ -52,6 +66,9 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   const v1::StreamFramesRequest request_;
   v1::StreamFramesResponse message_;
 
+  std::optional<RungChoice> choice_;  // what is sent, once that is known
+  std::optional<Rung> rung_;          // where that is encoded anew
+  int64_t head_ = -1;                 // newest frame of it that may be sent
   bool started_ = false;
   bool ended_ = false;     // StreamEnd was sent
   bool answered_ = false;  // Finish was called

@@ -1,0 +1,68 @@
+#ifndef CLEAVE_SERVER_WORKER_RUNG_LOG_H_
+#define CLEAVE_SERVER_WORKER_RUNG_LOG_H_
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "core/base/vec3.h"
+#include "core/stream/frame_decoder.h"
+#include "core/stream/frame_encoder.h"
+#include "core/stream/rungs.h"
+#include "server/session/frame_log.h"
+#include "server/worker/session_inputs.h"
+
+namespace cleave {
+
+// A coarser rung of a session's frames: decoded from the session's log, encoded anew and committed
+// to a log of its own, from frame 0 on. Its bytes follow from the session's alone, whoever watches
+// and whenever, so nothing is lost with it: a log that is damaged, or ahead of the session's, is
+// begun anew. Not thread-safe.
+class RungLog {
+ public:
+  // Goes on behind the last frame of the rung's log. The session has frame 0, and the caller owns
+  // the rung (owner_lock.h). Errors: InvalidArgument when the session's own frames are too coarse
+  // for the rung; NotFound, DataLoss.
+  static absl::StatusOr<std::unique_ptr<RungLog>> Open(const SessionPaths& paths,
+                                                       const SessionInputs& inputs, Rung rung);
+
+  // Newest frame committed, -1 for none.
+  int64_t head() const { return log_->head(); }
+
+  // Takes note of the session's frames up to `head`, which are committed.
+  absl::Status Follow(int64_t head) { return kept_.Refresh(head); }
+  bool behind() const { return head() < kept_.head(); }
+
+  // Encodes and commits the frame after head(). Precondition: behind(). After an error the object
+  // is of no more use; the directory is as before.
+  absl::Status EncodeNext();
+
+ private:
+  RungLog(const SessionPaths& paths, Rung rung)
+      : directory_(paths.rung(rung)), kept_(paths.frames()) {}
+
+  absl::Status MakeHeader(const SessionInputs& inputs, Rung rung);
+  // Brings both ends of the encoding to the head of the log.
+  absl::Status Resume();
+  absl::Status Begin();
+  StreamMesh mesh() const { return {rest_positions_, edges_}; }
+
+  std::string directory_;
+  FrameLogReader kept_;  // the session's
+  std::string kept_header_bytes_;
+  std::vector<Vec3> rest_positions_;
+  std::vector<std::array<int32_t, 2>> edges_;
+  StreamHeader header_;  // of the rung
+  std::optional<FrameLogWriter> log_;
+  std::optional<FrameDecoder> decoder_;  // of the session's frames
+  std::optional<FrameEncoder> encoder_;
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_SERVER_WORKER_RUNG_LOG_H_
