@@ -22,6 +22,8 @@ FrameStreamOptions StreamOptions(const FollowOptions& options, ProgressDisplay& 
   stream.stop_frame = options.stop_frame;
   stream.follow = options.stay;
   stream.events = options.events != nullptr;
+  stream.rung = options.accuracy.rung();
+  if (options.accuracy.tolerance > 0) stream.tolerance = options.accuracy.tolerance;
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last())
       stream.resume = FramePosition{last->epoch, last->frame, last->state_hash};
@@ -71,6 +73,21 @@ std::string FrameEvent(const StreamedFrame& frame) {
       .Str();
 }
 
+// What was given to somebody who asked.
+void TellAccuracy(const FrameStream& stream, const FollowOptions& options) {
+  const std::string rung(stream.rung() ? RungName(*stream.rung()) : "");
+  if (options.json) {
+    PrintResult(JsonLine()
+                    .Add("event", "accuracy")
+                    .Add("rung", rung)
+                    .Add("tolerance", stream.tolerance())
+                    .Str());
+  } else if (!options.quiet) {
+    PrintNote(absl::StrCat("coordinates within ", stream.tolerance(), " m",
+                           rung.empty() ? "" : " (" + rung + ")"));
+  }
+}
+
 void TakeOver(const IndexRow& row, FollowResult& result) {
   result.last_frame = row.frame;
   result.last_time = row.time;
@@ -90,6 +107,7 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
   const ScopedHandler handler(interrupt, SignalHandler(client, options, stream, interrupted));
   CLEAVE_RETURN_IF_ERROR(stream.Open());
   result.mesh_asset = stream.mesh_asset();
+  if (options.accuracy.asked()) TellAccuracy(stream, options);
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last()) TakeOver(*last, result);
     CLEAVE_RETURN_IF_ERROR(options.recorder->Begin(stream.header_bytes()));

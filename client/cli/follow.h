@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "cleave/v1/frame.pb.h"
+#include "client/cli/accuracy.h"
 #include "client/cli/event_file.h"
 #include "client/cli/interrupt.h"
 #include "client/cpp/client.h"
@@ -25,6 +26,7 @@ struct FollowOptions {
   bool pause_on_signal = false;  // Ctrl-C pauses the session; else it only leaves the stream
   bool json = false;             // a JSON line a frame on stdout instead of progress on stderr
   bool quiet = false;
+  AccuracyOptions accuracy;      // asked of the server
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
   EventFile* events = nullptr;   // takes what breaks; may be null
 };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/accuracy.h"
 #include "client/cli/console.h"
 #include "client/cli/exit_code.h"
 #include "client/cli/follow.h"
@@ -25,6 +26,7 @@ namespace {
 struct Options {
   ServerOptions server;
   GoalOptions goal;
+  AccuracyOptions accuracy;
   ProductOptions products;
   std::string scene;
   std::string out;
@@ -59,8 +61,10 @@ class Run {
   Client& client() { return *access_.client; }
 
   absl::Status FindOrCreateSession() {
-    CLEAVE_ASSIGN_OR_RETURN(const v1::Scene scene,
+    CLEAVE_ASSIGN_OR_RETURN(v1::Scene scene,
                             SceneForServer(client(), input_, options_.quiet || options_.json));
+    if (options_.accuracy.tolerance > 0)
+      scene.mutable_output()->set_tolerance(options_.accuracy.tolerance);
     if (const auto earlier = folder_.EarlierSession()) {
       CLEAVE_RETURN_IF_ERROR(folder_.CheckSameScene(scene));
       auto session = client().GetSession(*earlier);
@@ -82,6 +86,7 @@ class Run {
     request.set_session_id(id);
     *request.mutable_scene() = scene;
     request.set_threads(options_.threads);
+    KeepAccuracy(options_.accuracy, request);
     auto response = client().CreateSession(std::move(request));
     if (!response.ok()) return WithLines(input_.file, response.status());
     session_ = std::move(*response->mutable_session());
@@ -116,6 +121,7 @@ class Run {
     follow.goal_frame = session_.goal_frame();
     follow.head_frame = head_;
     follow.pause_on_signal = true;
+    follow.accuracy = options_.accuracy;
     follow.json = options_.json;
     follow.quiet = options_.quiet;
     follow.recorder = recorder.get();
@@ -189,7 +195,7 @@ class Run {
     std::string command = absl::StrCat("cleave run ", options_.scene, " --out ", options_.out);
     if (!options_.server.address.empty())
       absl::StrAppend(&command, " --server ", options_.server.address);
-    return command;
+    return command + options_.accuracy.Words();
   }
 
   Program& program_;
@@ -216,6 +222,8 @@ void AddRun(CLI::App& app, Program& program) {
   AddServerOptions(*verb, options->server, false);
   AddGoalOptions(*verb, options->goal);
   AddProductOptions(*verb, options->products);
+  AddAccuracyOptions(*verb, options->accuracy, "that the run keeps",
+                     "as the scene says, or standard");
   verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
@@ -225,13 +233,18 @@ void AddRun(CLI::App& app, Program& program) {
   verb->footer(
       "Leaves in DIR: frames.clv (the recorded frames), mesh.pb (the mesh, for `cleave export`\n"
       "and `cleave preview`), events.jsonl (a line an event: edge breaks, splits, separations),\n"
-      "reports.jsonl (a line of numbers a frame; private server only).\n"
+      "reports.jsonl (a line of numbers a frame; private server only), what --vtu, --ply, "
+      "--preview\n"
+      "and --plot make; and to go on with: scene.textproto (the scene as it was sent), session "
+      "(its\n"
+      "name), server/ (all that the private server holds).\n"
       "Their paths are printed on stdout, one a line. Ctrl-C pauses after the frame in work,\n"
       "twice gives that frame up; the same command goes on.\n\n"
       "Examples:\n"
       "  cleave run bar.scene.json                          a private server, into out/bar\n"
       "  cleave run bar.scene.json --vtu --preview --plot\n"
       "  cleave run bar.scene.json --out wedge7 --frames 12\n"
+      "  cleave run bar.scene.json --rung fine              ten times as accurate as without\n"
       "  cleave run bar.scene.json --server farm-3:7420     on a server that runs already\n");
   verb->callback([options, &program] {
     if (options->out.empty()) {

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/accuracy.h"
 #include "client/cli/console.h"
 #include "client/cli/goal.h"
 #include "client/cli/program.h"
@@ -16,6 +17,7 @@ namespace {
 struct Options {
   ServerOptions server;
   GoalOptions goal;
+  AccuracyOptions accuracy;
   std::string scene;
   std::string session;
   int threads = 0;
@@ -32,6 +34,7 @@ absl::Status Submit(Program& program, const Options& options) {
   request.set_session_id(options.session.empty() ? NewSessionId(options.scene)
                                                  : SessionId(options.session));
   request.set_threads(options.threads);
+  KeepAccuracy(options.accuracy, request);
   const auto created = client->CreateSession(std::move(request));
   if (!created.ok()) return WithLines(input.file, created.status());
   const std::string& name = created->session().name();
@@ -53,6 +56,8 @@ void AddSubmit(CLI::App& app, Program& program) {
       ->type_name("SCENE");
   AddServerOptions(*verb, options->server, true);
   AddGoalOptions(*verb, options->goal);
+  AddAccuracyOptions(*verb, options->accuracy, "that the session keeps, the finest for viewers",
+                     "as the scene says, or standard");
   verb->add_option("--session", options->session,
                    "Name of the session: a-z, 0-9 and -; default: the scene's name and some digits")
       ->type_name("NAME");

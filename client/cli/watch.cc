@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/accuracy.h"
 #include "client/cli/console.h"
 #include "client/cli/follow.h"
 #include "client/cli/goal.h"
@@ -18,6 +19,7 @@ namespace {
 struct Options {
   ServerOptions server;
   GoalOptions goal;
+  AccuracyOptions accuracy;
   std::string session;
   std::string out;
   int64_t from = 0;
@@ -78,6 +80,7 @@ absl::Status Watch(Program& program, const Options& options) {
   follow.stay = options.stay;
   follow.goal_frame = session.goal_frame();
   follow.head_frame = head;
+  follow.accuracy = options.accuracy;
   follow.json = options.json;
   follow.quiet = options.quiet;
   return Record(*client, program.interrupt, options, follow, scene);
@@ -100,6 +103,7 @@ void AddWatch(CLI::App& app, Program& program) {
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
       ->check(CLI::Range(int64_t{0}, int64_t{1} << 40))
       ->type_name("FRAME");
+  AddAccuracyOptions(*verb, options->accuracy, "of what is sent", "all that the session keeps");
   verb->add_flag("--run", options->run, "Let a paused session run on first");
   AddGoalOptions(*verb, options->goal);
   verb->add_flag("--stay", options->stay, "Stay when the run is over, for frames to come");
@@ -107,9 +111,12 @@ void AddWatch(CLI::App& app, Program& program) {
   verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
   verb->footer(
       "Ctrl-C leaves; the session goes on. With --out, a later `watch` with the same folder goes\n"
-      "on where the recording ends.\n\n"
+      "on where the recording ends. Coarser frames than the session keeps are encoded once for "
+      "all\n"
+      "who watch them; finer ones than it keeps there are none (exit code 7).\n\n"
       "Examples:\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --out out/bar\n"
+      "  cleave watch bar-3f2a1c --server farm-3:7420 --rung preview --out out/small\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --run      wake a paused session\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return Watch(shared, *options); };

@@ -505,6 +505,38 @@ class Server(CliTest):
         code, output, _ = self.ask("info", "--json")
         self.assertEqual(json.loads(output)["api_versions"], ["cleave.v1"])
 
+    def test_viewers_choose_among_the_accuracies_that_a_session_keeps(self):
+        scene = self.scene(BLOCK % 6)
+        self.assertEqual(self.ask("submit", scene, "--session", "fine", "--rung", "fine")[0], 0)
+        sizes = []
+        for rung in ("preview", "standard", "fine"):
+            out = self.folder / rung
+            code, output, errors = self.ask("watch", "fine", "--rung", rung, "--out", out, "--json")
+            self.assertEqual(code, 0, errors)
+            first, *frames = map(json.loads, output.splitlines())
+            self.assertEqual((first["event"], first["rung"]), ("accuracy", rung))
+            self.assertEqual([frame["frame"] for frame in frames], list(range(7)))
+            sizes.append((out / "frames.clv").stat().st_size)
+            self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        self.assertEqual(sizes, sorted(sizes))
+        tolerance = first["tolerance"]
+        code, _, errors = self.ask("watch", "fine", "--tolerance", 99.9 * tolerance)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("(standard)", errors)
+        code, _, errors = self.ask("watch", "fine", "--tolerance", tolerance / 2)
+        self.assertEqual(code, 7, errors)
+        self.assertIn("is finer than", errors)
+        code, _, errors = self.ask("watch", "fine", "--rung", "preview", "--out", out)
+        self.assertEqual(code, 7, errors)
+        self.assertIn("another accuracy", errors)
+        self.assertEqual(self.ask("watch", "fine", "--rung", "finest")[0], 2)
+        self.assertEqual(self.ask("watch", "fine", "--rung", "fine", "--tolerance", 1)[0], 2)
+        code, _, errors = self.ask("run", scene, "--out", self.folder / "run", "--rung", "preview")
+        self.assertEqual(code, 0, errors)
+        self.assertIn("(preview)", errors)
+        code, _, errors = self.ask("run", scene, "--out", self.folder / "run", "--rung", "standard")
+        self.assertEqual(code, 7, errors)
+
     def test_name_taken_by_another_scene_exits_7_and_bad_name_3(self):
         scene = self.scene(BLOCK % 2)
         self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)

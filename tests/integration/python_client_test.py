@@ -103,6 +103,26 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(late.number, 20)
         self.assertIsNone(next(iter(session.frames(20))).events)
 
+    def test_viewers_ask_for_the_accuracy_that_they_need(self):
+        session = self.client.create_session("accurate", first_steps.bar(), rung="fine")
+        self.addCleanup(session.delete)
+        session.run()
+        mesh = session.mesh()
+        fine = list(session.frames(mesh=mesh))
+        preview = list(session.frames(mesh=mesh, rung="preview"))
+        self.assertEqual(len(preview), len(fine))
+        self.assertAlmostEqual(preview[0].tolerance / fine[0].tolerance, 100)
+        for coarse, exact in zip(preview, fine):
+            np.testing.assert_array_equal(coarse.broken_edges, exact.broken_edges)
+            error = np.abs(coarse.positions - exact.positions).max()
+            self.assertLessEqual(error, coarse.tolerance - exact.tolerance)
+        latest = list(session.frames(mesh=mesh, tolerance=5 * fine[0].tolerance, latest=True))
+        self.assertEqual(latest[0].tolerance, fine[0].tolerance)
+        self.assertEqual(latest[-1].number, fine[-1].number)
+        self.assertLess(len(latest), len(fine))
+        with self.assertRaisesRegex(CleaveError, "is finer than"):
+            list(session.frames(mesh=mesh, tolerance=0.5 * fine[0].tolerance))
+
     def test_events_of_a_run_folder_are_read(self):
         place = '"rest":[1,2,3],"position":[1.5,2,3],"energy":0.25}'
         part = '"volume":0.5,"node_count":4,"first_node":%d,'

@@ -76,7 +76,7 @@ absl::Status Recorder::Begin(absl::string_view header_bytes) {
   if (header_bytes == header_bytes_) return absl::OkStatus();
   if (!header_bytes_.empty())
     return absl::FailedPreconditionError(
-        absl::StrCat(path_, ": holds the frames of another simulation"));
+        absl::StrCat(path_, ": holds the frames of another simulation, or of another accuracy"));
   CLEAVE_RETURN_IF_ERROR(Write(header_bytes));
   header_bytes_ = std::string(header_bytes);
   index_.emplace(header_bytes_);

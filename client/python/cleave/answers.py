@@ -17,6 +17,7 @@ class Frame:
     positions: np.ndarray  # nodes x 3 float64, m
     broken_edges: np.ndarray  # ascending int32
     events: object = None  # Events (events.py) where they were asked for
+    tolerance: float = 0.0  # m, largest error of a coordinate against the simulation
 
 
 @dataclasses.dataclass(frozen=True)

@@ -151,8 +151,12 @@ class Client:
                 time.sleep(_delay(attempt))
         return digest.sha256.hex()
 
-    def create_session(self, session_id, scene, threads=0, validate_only=False):
-        """Creates a session of a Scene message; with validate_only returns its Plan instead."""
+    def create_session(self, session_id, scene, threads=0, validate_only=False, rung=None):
+        """Creates a session of a Scene message; with validate_only returns its Plan instead.
+
+        `rung` is what it keeps of its frames, and so the finest that viewers can have: "preview",
+        "standard" or "fine". Without it: as scene.output.tolerance says, or standard.
+        """
         response = self._call(
             self._sessions.CreateSession,
             session_pb2.CreateSessionRequest(
@@ -160,6 +164,7 @@ class Client:
                 scene=scene,
                 threads=threads,
                 validate_only=validate_only,
+                rung=_rung(rung),
                 request_id=uuid.uuid4().hex,
             ),
             seconds=300,
@@ -389,19 +394,35 @@ class Session:
         scale = mesh.unit_scale if mesh.HasField("unit_scale") else 1.0
         return self._client.download_mesh(mesh.asset, scale)
 
-    def frames(self, first_frame=0, stop_frame=None, mesh=None, events=False):
+    def frames(
+        self,
+        first_frame=0,
+        stop_frame=None,
+        mesh=None,
+        events=False,
+        rung=None,
+        tolerance=None,
+        latest=False,
+    ):
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
-        what broke in them. Raises SimulationFailed after the last frame of a run that failed.
+        what broke in them. `rung` ("preview", "standard", "fine") or `tolerance` (m) is the accuracy
+        that will do, by default all that the session keeps; frames tell the tolerance that they
+        have. With `latest` a slow reader skips to the newest key frame. Raises CleaveError
+        (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()
         decoder = None
         attempt = 0
         while True:
             request = frame_pb2.StreamFramesRequest(
-                session=self.name, first_frame=first_frame, events=events
+                session=self.name, first_frame=first_frame, events=events, latest=latest
             )
+            if rung is not None:
+                request.rung = _rung(rung)
+            if tolerance is not None:
+                request.tolerance = tolerance
             if stop_frame is not None:
                 request.stop_frame = stop_frame
             if decoder is not None and decoder.frame >= 0:
@@ -416,6 +437,7 @@ class Session:
                 for message in stream:
                     event = message.WhichOneof("event")
                     if event == "start" and decoder is None:
+                        given = message.start.tolerance
                         decoder = FrameDecoder(
                             message.start.header, mesh.positions, mesh.edges()
                         )
@@ -446,6 +468,7 @@ class Session:
                                 decoder.positions.copy(),
                                 decoder.broken_edges.copy(),
                                 Events.of_message(broken) if events else None,
+                                given,
                             )
                         broken.Clear()
                     elif event == "end":
@@ -462,6 +485,13 @@ class Session:
             if attempt >= _ATTEMPTS:
                 raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
             time.sleep(_delay(attempt))
+
+
+def _rung(name):
+    names = {None: 0, "preview": 1, "standard": 2, "fine": 3}
+    if name not in names:
+        raise ValueError(f"rung: {name!r} is none of preview, standard, fine")
+    return names[name]
 
 
 def _delay(attempt):
