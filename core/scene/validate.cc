@@ -190,7 +190,7 @@ void CheckSettings(const Scene& scene, Faults& faults, Checker& check) {
 
   const Output& output = scene.output;
   if (output.tolerance.has_value()) {
-    check.Above("output.tolerance", *output.tolerance, 0, limits::kMaxLength);
+    check.Within("output.tolerance", *output.tolerance, 0, limits::kMaxLength);
   }
   check.Count("output.keyframe_interval", output.keyframe_interval, 1, limits::kMaxIntervalFrames);
   check.Count("output.checkpoint_interval", output.checkpoint_interval, 1,

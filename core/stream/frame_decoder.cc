@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/stream/exact_positions.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -28,6 +29,8 @@ absl::StatusOr<FrameDecoder> FrameDecoder::Create(absl::string_view header_bytes
     decoder.interpolation_.emplace(header, mesh);
     decoder.labels_.emplace(decoder.interpolation_->order(), decoder.interpolation_->stencils(),
                             mesh.edges);
+  } else if (decoder.exact()) {
+    CLEAVE_RETURN_IF_ERROR(RankPositions(mesh.rest_positions, decoder.exact_rest_));
   } else {
     decoder.rest_positions_.assign(mesh.rest_positions.begin(), mesh.rest_positions.end());
   }
@@ -151,6 +154,7 @@ absl::Status FrameDecoder::DecodePositions(const FrameParts& parts, size_t secti
   const uint64_t nodes = header_.node_count;
   const std::span<const Section> chunks = std::span(parts.sections).subspan(section);
   const uint64_t expected = (nodes + header_.chunk_nodes - 1) / header_.chunk_nodes;
+  const uint64_t widest = 3 * (exact() ? sizeof(int64_t) : sizeof(int32_t));
   if (chunks.size() != expected) {
     return absl::DataLossError(
         absl::StrCat("frame has ", chunks.size(), " sections of positions; it needs ", expected));
@@ -167,16 +171,21 @@ absl::Status FrameDecoder::DecodePositions(const FrameParts& parts, size_t secti
             : chunk.prediction == Prediction::kLast ||
                   (chunk.prediction == Prediction::kLinear && state_.has_previous);
     if (chunk.type != SectionType::kPositions || chunk.first != first || chunk.count != count ||
-        chunk.raw_bytes % (3 * count) != 0 || chunk.raw_bytes > 12 * count || !predicted) {
+        chunk.raw_bytes % (3 * count) != 0 || chunk.raw_bytes > widest * count || !predicted) {
       return absl::DataLossError(
           absl::StrCat("positions section ", index, " does not fit its frame"));
     }
   }
-  next.positions.resize(3 * nodes);
+  if (exact()) {
+    next.exact.resize(3 * nodes);
+  } else {
+    next.positions.resize(3 * nodes);
+  }
   std::vector<absl::Status> statuses(expected);
   ParallelFor(static_cast<int64_t>(expected), 1, [&](int64_t begin, int64_t end) {
     for (auto index = static_cast<size_t>(begin); index < static_cast<size_t>(end); ++index) {
-      statuses[index] = DecodeChunk(chunks[index], rest_, next.positions);
+      statuses[index] = exact() ? DecodeExactChunk(chunks[index], exact_rest_, state_, next.exact)
+                                : DecodeChunk(chunks[index], rest_, next.positions);
     }
   });
   for (const absl::Status& status : statuses) CLEAVE_RETURN_IF_ERROR(status);
@@ -187,7 +196,7 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   CLEAVE_ASSIGN_OR_RETURN(const FrameParts parts, SplitFrame(frame_bytes));
   const FrameHeader& frame = parts.header;
   CLEAVE_RETURN_IF_ERROR(CheckBase(frame));
-  if (frame.kind == FrameKind::kKey && !interpolation_.has_value() &&
+  if (frame.kind == FrameKind::kKey && !interpolation_.has_value() && !exact() &&
       rest_tolerance_ != frame.tolerance) {
     rest_ = QuantiseRest(rest_positions_, header_.origin,
                          QuantisationStep(frame.tolerance, header_.domain_bound));
@@ -204,6 +213,7 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   if (frame.kind == FrameKind::kHold) {
     if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
     next.positions = state_.positions;
+    next.exact = state_.exact;
     next.residuals = state_.residuals;
   } else if (interpolation_.has_value()) {
     CLEAVE_RETURN_IF_ERROR(
@@ -223,6 +233,7 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
   std::swap(state_, next);
   // The state before is now `next`; its positions become the history.
   state_.previous.swap(next.positions);
+  state_.previous_exact.swap(next.exact);
   state_hash_ = frame.state_hash;
   if (interpolation_.has_value()) {
     interpolation_->Accept(frame.kind);
@@ -235,6 +246,14 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
   frame_.fragments = state_.fragments;
   frame_.broken_edges = state_.broken_edges;
   frame_.positions.resize(header_.node_count);
+  if (exact()) {
+    for (size_t node = 0; node < frame_.positions.size(); ++node) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        frame_.positions[node][axis] = OfRank(state_.exact[3 * node + axis]);
+      }
+    }
+    return;
+  }
   const double unit = header_.UnitOf(state_.tolerance);
   const Vec3 origin = header_.origin;
   const int32_t* nodes =

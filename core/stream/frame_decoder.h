@@ -45,7 +45,8 @@ class FrameDecoder {
   absl::Status Apply(absl::string_view frame_bytes);
 
   const StreamHeader& header() const { return header_; }
-  // The last applied frame; positions are origin + integer * step in doubles. Without one,
+  // The last applied frame; positions are origin + integer * step in doubles, with
+  // predictor 3 those that were encoded. Without one,
   // frame().frame is -1.
   const Frame& frame() const { return frame_; }
   uint32_t epoch() const { return state_.epoch; }
@@ -59,6 +60,7 @@ class FrameDecoder {
   absl::StatusOr<std::vector<int32_t>> DecodeLabels(const Section& section) const;
   absl::Status DecodeTopology(const FrameParts& parts, StreamState& next, size_t& section) const;
   absl::Status DecodePositions(const FrameParts& parts, size_t section, StreamState& next) const;
+  bool exact() const { return header_.predictor_id == kPredictorExact; }
   absl::Status DecodeChunk(const Section& section, const std::vector<int32_t>& rest,
                            std::vector<int32_t>& positions) const;
   void Accept(StreamState& next, const FrameHeader& frame);
@@ -67,6 +69,7 @@ class FrameDecoder {
   std::string header_bytes_;
   std::vector<Vec3> rest_positions_;  // with predictor 1
   std::vector<int32_t> rest_;         // on the grid of rest_tolerance_
+  std::vector<int64_t> exact_rest_;   // ranks, with predictor 3
   double rest_tolerance_ = 0;         // m
   StreamState state_;
   StreamState scratch_;  // where the next frame is decoded, so that a bad one changes nothing

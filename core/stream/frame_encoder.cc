@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/stream/exact_positions.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -33,10 +34,17 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
   CLEAVE_RETURN_IF_ERROR(CheckStreamMesh(header, mesh));
   const std::span<const Vec3> rest_positions = mesh.rest_positions;
   encoder.tolerance_ = header.tolerance;
-  encoder.next_.resize(rest_positions.size() * 3);
+  const bool exact = encoder.exact();
+  const size_t coordinates = 3 * rest_positions.size();
+  if (exact) {
+    CLEAVE_RETURN_IF_ERROR(RankPositions(rest_positions, encoder.exact_rest_));
+  } else {
+    encoder.next_.resize(coordinates);
+  }
   if (state.has_value() && state->frame >= 0) {
-    if (state->positions.size() != encoder.next_.size() ||
-        (state->has_previous && state->previous.size() != encoder.next_.size())) {
+    const size_t last = exact ? state->exact.size() : state->positions.size();
+    const size_t previous = exact ? state->previous_exact.size() : state->previous.size();
+    if (last != coordinates || (state->has_previous && previous != coordinates)) {
       return absl::FailedPreconditionError("the state to go on from is of another mesh");
     }
     CLEAVE_RETURN_IF_ERROR(CheckTolerance(state->tolerance, header));
@@ -58,6 +66,7 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
                             mesh.edges);
     return encoder;
   }
+  if (exact) return encoder;
   encoder.rest_positions_.assign(rest_positions.begin(), rest_positions.end());
   encoder.rest_ = QuantiseRest(encoder.rest_positions_, header.origin,
                                QuantisationStep(encoder.tolerance_, header.domain_bound));
@@ -76,7 +85,7 @@ absl::Status FrameEncoder::StartEpoch(uint32_t epoch) {
 absl::Status FrameEncoder::SetTolerance(double tolerance) {
   CLEAVE_RETURN_IF_ERROR(CheckTolerance(tolerance, header_));
   tolerance_ = tolerance;
-  if (interpolation_.has_value()) return absl::OkStatus();
+  if (interpolation_.has_value() || exact()) return absl::OkStatus();
   rest_ = QuantiseRest(rest_positions_, header_.origin,
                        QuantisationStep(tolerance_, header_.domain_bound));
   return absl::OkStatus();
@@ -118,6 +127,7 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
 
 absl::Status FrameEncoder::Quantise(const std::vector<Vec3>& positions) {
   if (interpolation_.has_value()) return interpolation_->SetTargets(positions, tolerance_);
+  if (exact()) return RankPositions(positions, next_exact_);
   const double inverse_step = 1.0 / QuantisationStep(tolerance_, header_.domain_bound);
   const Vec3 origin = header_.origin;
   constexpr double kLimit = kMaxQuantised;
@@ -285,12 +295,15 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     if (interpolation_.has_value()) {
       interpolation_->Encode(key, state_, header, body, next_, next_residuals_);
       std::swap(state_.residuals, next_residuals_);
+    } else if (exact()) {
+      AppendExactPositions(header_, key, exact_rest_, state_, next_exact_, header, body);
     } else {
       AppendPositions(key, header, body);
     }
   };
   const auto all_hold = [&] {
-    return interpolation_.has_value() ? interpolation_->AllHold(state_) : next_ == state_.positions;
+    if (interpolation_.has_value()) return interpolation_->AllHold(state_);
+    return exact() ? next_exact_ == state_.exact : next_ == state_.positions;
   };
   const bool holds = !key && !breaks && all_hold();
   if (interpolation_.has_value() && !holds) interpolation_->SetBroken(frame.broken_edges, state_);
@@ -301,6 +314,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   } else if (holds) {
     header.kind = FrameKind::kHold;
     next_ = state_.positions;
+    next_exact_ = state_.exact;
   } else {
     header.kind = FrameKind::kDelta;
     std::vector<int32_t> newly_broken;
@@ -319,6 +333,8 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   state_.broken_edges = frame.broken_edges;
   state_.previous.swap(state_.positions);
   state_.positions.swap(next_);
+  state_.previous_exact.swap(state_.exact);
+  state_.exact.swap(next_exact_);
   state_.has_previous = !key;
   next_.resize(state_.positions.size());
   if (interpolation_.has_value()) {

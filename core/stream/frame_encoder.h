@@ -46,7 +46,8 @@ class FrameEncoder {
   // Errors, after which the encoder is as before: InvalidArgument for a wrong number of positions,
   // a frame number that does not rise, broken edges that are unsorted, out of range or fewer than
   // before, a time that is not finite; OutOfRange for a coordinate that is NaN, infinite or more
-  // than about 2^31 tolerances (predictor 2: 2^25) from the origin, naming the first such node.
+  // than about 2^31 tolerances (predictor 2: 2^25; predictor 3: nothing finite is too far) from the
+  // origin, naming the first such node.
   absl::StatusOr<EncodedFrame> Encode(const Frame& frame);
 
   // Makes the next frame a key frame of this epoch (after a rewind frame numbers may fall). Error:
@@ -62,6 +63,7 @@ class FrameEncoder {
 
  private:
   FrameEncoder() = default;
+  bool exact() const { return header_.predictor_id == kPredictorExact; }
   absl::Status CheckFrame(const Frame& frame) const;
   absl::Status Quantise(const std::vector<Vec3>& positions);
   void AppendCheckpoint(std::span<const int32_t> edges, FrameHeader& header,
@@ -74,10 +76,12 @@ class FrameEncoder {
   std::string header_bytes_;
   std::vector<Vec3> rest_positions_;  // with predictor 1
   std::vector<int32_t> rest_;         // on the grid of tolerance_; with predictor 1
+  std::vector<int64_t> exact_rest_;   // ranks, with predictor 3
   double tolerance_ = 0;              // m, of the next frame
   uint32_t epoch_ = 0;                // of the next frame
   StreamState state_;
   std::vector<int32_t> next_;                          // quantised positions of the frame in work
+  std::vector<int64_t> next_exact_;                    // ranks of them, with predictor 3
   std::optional<InterpolationEncoder> interpolation_;  // with predictor 2
   std::optional<PieceLabels> labels_;                  // with predictor 2
   ResidualHistory next_residuals_;

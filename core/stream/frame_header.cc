@@ -29,7 +29,7 @@ absl::Status CheckValues(const FrameHeader& header) {
     return bad("base frame", header.base_frame);
   }
   if (!std::isfinite(header.time)) return bad("time", header.time);
-  if (!(header.tolerance > 0)) return bad("tolerance", header.tolerance);
+  if (!(header.tolerance >= 0)) return bad("tolerance", header.tolerance);
   if (header.fragments < 0) return bad("fragments", header.fragments);
   if (header.frame_bytes < kFrameHeaderBytes ||
       (header.frame_bytes - kFrameHeaderBytes) / kSectionHeaderBytes < header.section_count) {

@@ -22,7 +22,7 @@ struct FrameHeader {
   int64_t frame = 0;
   int64_t base_frame = 0;  // the frame that a delta or hold applies to; a key frame's own number
   double time = 0;         // s
-  double tolerance = 0;    // m, of this frame
+  double tolerance = 0;    // m, of this frame; 0: to the bit
   int64_t fragments = 0;
   uint64_t broken_edges = 0;  // how many, after this frame
   uint64_t state_hash = 0;    // XXH3-64 of the state after this frame

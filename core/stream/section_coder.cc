@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <memory>
+#include <type_traits>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/bytes.h"
@@ -17,6 +18,45 @@ struct FreeContext {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
+
+template <typename Int>
+std::string Split(std::span<const Int> residuals) {
+  using Bits = std::make_unsigned_t<Int>;
+  const auto zigzag = [](Int value) {
+    return (static_cast<Bits>(value) << 1) ^ static_cast<Bits>(value >> (8 * sizeof(Int) - 1));
+  };
+  Bits all = 0;
+  for (const Int residual : residuals) all |= zigzag(residual);
+  const size_t planes = (static_cast<size_t>(std::bit_width(all)) + 7) / 8;
+  const size_t nodes = residuals.size() / 3;
+  std::string bytes(planes * residuals.size(), '\0');
+  char* out = bytes.data();
+  for (size_t plane = 0; plane < planes; ++plane) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t node = 0; node < nodes; ++node) {
+        *out++ = static_cast<char>(zigzag(residuals[3 * node + axis]) >> (8 * plane));
+      }
+    }
+  }
+  return bytes;
+}
+
+template <typename Int>
+void Unite(absl::string_view planes, std::span<Int> residuals) {
+  using Bits = std::make_unsigned_t<Int>;
+  const size_t nodes = residuals.size() / 3;
+  const size_t plane_count = residuals.empty() ? 0 : planes.size() / residuals.size();
+  const auto* in = reinterpret_cast<const unsigned char*>(planes.data());
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t node = 0; node < nodes; ++node) {
+      Bits value = 0;
+      for (size_t plane = 0; plane < plane_count; ++plane) {
+        value |= Bits{in[(plane * 3 + axis) * nodes + node]} << (8 * plane);
+      }
+      residuals[3 * node + axis] = static_cast<Int>((value >> 1) ^ (~(value & 1) + 1));
+    }
+  }
+}
 
 }  // namespace
 
@@ -70,39 +110,14 @@ absl::Status DecodeParts(absl::string_view coded, uint32_t parts, std::span<char
   return reader.Finish("section");
 }
 
-std::string ToBytePlanes(std::span<const int32_t> residuals) {
-  const auto zigzag = [](int32_t value) {
-    return (static_cast<uint32_t>(value) << 1) ^ static_cast<uint32_t>(value >> 31);
-  };
-  uint32_t all = 0;
-  for (const int32_t residual : residuals) all |= zigzag(residual);
-  const size_t planes = (static_cast<size_t>(std::bit_width(all)) + 7) / 8;
-  const size_t nodes = residuals.size() / 3;
-  std::string bytes(planes * residuals.size(), '\0');
-  char* out = bytes.data();
-  for (size_t plane = 0; plane < planes; ++plane) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      for (size_t node = 0; node < nodes; ++node) {
-        *out++ = static_cast<char>(zigzag(residuals[3 * node + axis]) >> (8 * plane));
-      }
-    }
-  }
-  return bytes;
-}
+std::string ToBytePlanes(std::span<const int32_t> residuals) { return Split(residuals); }
+std::string ToBytePlanes(std::span<const int64_t> residuals) { return Split(residuals); }
 
 void FromBytePlanes(absl::string_view planes, std::span<int32_t> residuals) {
-  const size_t nodes = residuals.size() / 3;
-  const size_t plane_count = residuals.empty() ? 0 : planes.size() / residuals.size();
-  const auto* in = reinterpret_cast<const unsigned char*>(planes.data());
-  for (size_t axis = 0; axis < 3; ++axis) {
-    for (size_t node = 0; node < nodes; ++node) {
-      uint32_t value = 0;
-      for (size_t plane = 0; plane < plane_count; ++plane) {
-        value |= uint32_t{in[(plane * 3 + axis) * nodes + node]} << (8 * plane);
-      }
-      residuals[3 * node + axis] = static_cast<int32_t>((value >> 1) ^ (~(value & 1) + 1));
-    }
-  }
+  Unite(planes, residuals);
+}
+void FromBytePlanes(absl::string_view planes, std::span<int64_t> residuals) {
+  Unite(planes, residuals);
 }
 
 std::string ToGaps(std::span<const int32_t> ids) {

@@ -19,13 +19,14 @@ std::string CodeParts(absl::string_view raw, uint32_t parts);
 // DataLoss.
 absl::Status DecodeParts(absl::string_view coded, uint32_t parts, std::span<char> raw);
 
-// Residuals of n nodes (x, y, z of each, |r| < 2^31) to byte planes: zigzag, then for each plane,
-// lowest first, the bytes of all x, all y, all z. As many planes as the largest residual needs,
-// possibly none.
+// Residuals of n nodes (x, y, z of each) to byte planes: zigzag, then for each plane, lowest first,
+// the bytes of all x, all y, all z. As many planes as the largest residual needs, possibly none.
 std::string ToBytePlanes(std::span<const int32_t> residuals);
+std::string ToBytePlanes(std::span<const int64_t> residuals);
 
-// The reverse; `planes` are 3 * nodes bytes each, at most 4 of them.
+// The reverse; `planes` are 3 * nodes bytes each, at most as many as a residual has bytes.
 void FromBytePlanes(absl::string_view planes, std::span<int32_t> residuals);
+void FromBytePlanes(absl::string_view planes, std::span<int64_t> residuals);
 
 // Ascending ids as LEB128 of the gaps, the first counted from -1.
 std::string ToGaps(std::span<const int32_t> ids);

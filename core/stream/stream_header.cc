@@ -35,8 +35,9 @@ bool IsKnown(const StreamHeader& header) {
       header.order_id == kOrderClient && header.predictor_id == kPredictorTemporal;
   const bool interpolation =
       header.order_id == kOrderMortonLevel && header.predictor_id == kPredictorInterpolation;
+  const bool exact = header.order_id == kOrderClient && header.predictor_id == kPredictorExact;
   return header.view_id == kViewState &&
-         ((temporal && header.coder_id == kCoderZstdPlanes) ||
+         (((temporal || exact) && header.coder_id == kCoderZstdPlanes) ||
           (interpolation &&
            (header.coder_id == kCoderZstdPlanes || header.coder_id == kCoderContextRans)));
 }
@@ -93,6 +94,11 @@ double StreamHeader::UnitOf(double frame_tolerance) const {
 }
 
 absl::Status CheckTolerance(double tolerance, const StreamHeader& header) {
+  if (header.predictor_id == kPredictorExact) {
+    if (tolerance == 0) return absl::OkStatus();
+    return absl::InvalidArgumentError(
+        absl::StrCat("tolerance of ", tolerance, " m; a stream of exact positions has 0"));
+  }
   // Rest positions must fit the grid.
   const double finest = header.predictor_id == kPredictorInterpolation ? 0x1p-23 : 0x1p-30;
   const double low = std::max({1e-15, Farthest(header) * finest, header.domain_bound * 0x1p-22});
@@ -138,6 +144,11 @@ void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameter
   parameters.coder_id = reaches ? kCoderContextRans : kCoderZstdPlanes;
 }
 
+void ChooseExact(StreamParameters& parameters) {
+  parameters.predictor_id = kPredictorExact;
+  parameters.coder_id = kCoderZstdPlanes;
+}
+
 absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters,
                                               std::span<const Vec3> rest_positions) {
   StreamHeader header;
@@ -169,10 +180,14 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
   }
   for (int axis = 0; axis < 3; ++axis)
     header.origin[axis] = 0.5 * header.bbox_min[axis] + 0.5 * header.bbox_max[axis];
-  if (header.tolerance == 0) header.tolerance = RungTolerance(parameters.rung, header.diagonal());
+  const bool exact = header.predictor_id == kPredictorExact;
+  if (header.tolerance == 0 && !exact)
+    header.tolerance = RungTolerance(parameters.rung, header.diagonal());
   const double farthest = Farthest(header);
   const double affordable = header.tolerance * 0x1p20;
-  if (farthest <= affordable) {
+  if (exact) {
+    header.domain_bound = 0;  // float32 is not to the bit
+  } else if (farthest <= affordable) {
     header.domain_bound = std::min(affordable, std::max(32 * farthest, header.tolerance * 0x1p10));
   } else if (farthest <= 2 * affordable) {
     header.domain_bound = 2 * farthest;

@@ -21,6 +21,7 @@ inline constexpr uint16_t kOrderClient = 1;             // nodes in the order of
 inline constexpr uint16_t kOrderMortonLevel = 2;        // from coarse to fine (node_order.h)
 inline constexpr uint16_t kPredictorTemporal = 1;       // rest, last frame, or linear, by chunk
 inline constexpr uint16_t kPredictorInterpolation = 2;  // from coarser nodes; needs order 2
+inline constexpr uint16_t kPredictorExact = 3;          // as 1, to the bit; tolerance 0
 inline constexpr uint16_t kCoderZstdPlanes = 1;         // zstd over byte planes
 inline constexpr uint16_t kCoderContextRans = 2;        // residual_coder.h; needs predictor 2
 inline constexpr uint16_t kViewState = 1;               // every node and every broken edge
@@ -43,7 +44,7 @@ struct StreamHeader {
   uint16_t view_id = kViewState;
   uint32_t chunk_nodes = 16384;     // nodes in every positions section but the last, [1, 65536]
   uint32_t keyframe_interval = 24;  // frames
-  double tolerance = 0;             // m, largest error of a coordinate
+  double tolerance = 0;             // m, largest error of a coordinate; 0 with predictor 3
   double domain_bound = 0;          // m, see MakeStreamHeader
   double frames_per_second = 24;
   Vec3 bbox_min{};  // m, of the rest positions
@@ -76,6 +77,9 @@ struct StreamParameters {
 // grid is coarser.
 void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameters);
 
+// Sets the ids that keep every coordinate to the bit, wherever it is; tolerance must be 0.
+void ChooseExact(StreamParameters& parameters);
+
 // Fills a header for a body with these rest positions (m), choosing the origin (centre of the
 // bounding box) and the domain bound: |decoded - x| <= tolerance always holds for the decoder's
 // doubles, and where |x| <= domain_bound also after they are rounded to float32. The bound is 32
@@ -83,7 +87,7 @@ void ChooseIds(std::span<const Vec3> rest_positions, StreamParameters& parameter
 // its step; where even the body itself costs an eighth or more, it is 0 and nothing is promised
 // (the tolerance is finer than float32 there). Errors: InvalidArgument that names every field at
 // fault; the tolerance must be in [1e-15, 1e9] m and at least 2^-30 (predictor 2: 2^-23) of the
-// farthest coordinate.
+// farthest coordinate. With predictor 3 it must be 0, and every double is kept.
 absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters,
                                               std::span<const Vec3> rest_positions);
 

@@ -17,6 +17,7 @@ uint64_t HashStreamState(absl::string_view header_bytes, const StreamState& stat
   put(state.fragments);
   put(static_cast<uint64_t>(state.broken_edges.size()));
   hash.Update(state.positions.data(), state.positions.size() * sizeof(int32_t));
+  hash.Update(state.exact.data(), state.exact.size() * sizeof(int64_t));
   hash.Update(state.broken_edges.data(), state.broken_edges.size() * sizeof(int32_t));
   return hash.Digest();
 }

@@ -20,10 +20,13 @@ struct StreamState {
   double tolerance = 0;  // m, of the grid that the integers are on
   int64_t fragments = 0;
   // Quantised coordinates, x, y, z of each node in the stream's order; FORMAT.md, "Quantisation".
+  // With predictor 3 there are ranks (exact_positions.h) instead.
   std::vector<int32_t> positions;
+  std::vector<int64_t> exact;
   // The same a frame before; only valid when has_previous. After a key frame there is none for
   // predictor 1, and predictor 2 takes the key frame's own.
   std::vector<int32_t> previous;
+  std::vector<int64_t> previous_exact;
   bool has_previous = false;
   std::vector<int32_t> broken_edges;  // ascending
   ResidualHistory residuals;          // with coder 2

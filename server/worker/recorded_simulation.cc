@@ -35,6 +35,8 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
                             ParseStreamHeader(recorded->log_.header_bytes()));
     parameters.predictor_id = begun.predictor_id;
     parameters.coder_id = begun.coder_id;
+  } else if (scene.output.tolerance == 0.0) {
+    ChooseExact(parameters);
   } else {
     ChooseIds(recorded->rest_positions_, parameters);
   }

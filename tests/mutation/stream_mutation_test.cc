@@ -41,7 +41,7 @@ struct Corpus {
   explicit Corpus(const GoldenStream& golden)
       : bytes(Load(std::string(golden.name) + ".clv")),
         rest(LoadAll<Vec3>(std::string(golden.name) + ".rest")) {
-    if (golden.predictor_id == kPredictorInterpolation) {
+    if (golden.interpolates()) {
       edges = LoadAll<std::array<int32_t, 2>>(std::string(golden.name) + ".edges");
     }
     const BufferAccess file(bytes);
@@ -139,6 +139,7 @@ TEST(StreamMutation, ForgedFramesAreRefusedAndChangeNothingOrAreRight) {
           ASSERT_LT(status.message().size(), 1000u);
           ASSERT_EQ(decoder->state().frame, before.frame);
           ASSERT_EQ(decoder->state().positions, before.positions);
+          ASSERT_EQ(decoder->state().exact, before.exact);
           ASSERT_EQ(decoder->state().broken_edges, before.broken_edges);
           continue;
         }

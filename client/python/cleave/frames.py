@@ -10,7 +10,7 @@ from cleave.interpolation import UNITS_PER_STEP
 
 KEY, DELTA, HOLD = 1, 2, 3
 TOPOLOGY_DELTA, TOPOLOGY_CHECKPOINT, POSITIONS, MOTION, LABELS = 1, 2, 3, 4, 5
-_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1))  # order, predictor, coder, view
+_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1), (1, 3, 1, 1))  # order, predictor, coder, view
 
 
 class StreamError(Exception):
@@ -119,6 +119,8 @@ class StreamHeader:
 
     def allows(self, tolerance):
         """True if frames of this stream may have the tolerance."""
+        if self.predictor == 3:
+            return tolerance == 0
         farthest = max(abs(x) for x in self.bbox_min + self.bbox_max)
         finest = 2.0**-23 if self.predictor == 2 else 2.0**-30
         low = max(1e-15, farthest * finest, self.domain_bound * 2.0**-22)
@@ -170,7 +172,7 @@ class FrameHeader:
             or header.frame < 0
             or not base_fits
             or not math.isfinite(header.time)
-            or not header.tolerance > 0
+            or not header.tolerance >= 0
             or header.fragments < 0
             or header.frame_bytes < cls.SIZE + 24 * header.sections
         ):

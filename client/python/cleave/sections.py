@@ -11,10 +11,11 @@ from cleave.frames import DamagedError, UnsupportedError
 def residuals_of_planes(section, planes, count):
     """Byte planes (FORMAT.md section 6.3) to residuals, count x 3."""
     raw = np.frombuffer(decode_parts(section, planes), "u1").reshape(planes, 3, count)
-    zigzag = np.zeros((3, count), "i8")
+    zigzag = np.zeros((3, count), "u8")
     for plane in range(planes):
-        zigzag |= raw[plane].astype("i8") << (8 * plane)
-    return ((zigzag >> 1) ^ -(zigzag & 1)).T
+        zigzag |= raw[plane].astype("u8") << np.uint64(8 * plane)
+    half, odd = (zigzag >> np.uint64(1)).view("i8"), (zigzag & np.uint64(1)).view("i8")
+    return (half ^ -odd).T
 
 
 def decode_parts(section, parts):

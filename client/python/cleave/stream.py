@@ -127,6 +127,9 @@ class FrameDecoder:
         self.fragments = header.fragments
         self.broken_edges = broken
         self.state_hash = header.state_hash
+        if self.header.predictor == 3:
+            self.positions = _of_ranks(quantised)
+            return header
         unit = self.header.unit(header.tolerance)
         positions = np.asarray(self.header.origin) + quantised.astype("f8") * unit
         if self._predictor is not None:
@@ -197,14 +200,18 @@ class FrameDecoder:
         nodes, chunk_nodes = self.header.nodes, self.header.chunk_nodes
         if len(chunks) != -(-nodes // chunk_nodes):
             raise DamagedError("frame lacks positions or has too many")
+        exact = self.header.predictor == 3
         if header.kind == KEY:
-            predictions = {_REST: self._quantised_rest(header)}
+            rest = _ranks_of(self._rest) if exact else self._quantised_rest(header)
+            predictions = {_REST: rest}
         else:
             predictions = {_LAST: self._quantised}
             if self._previous is not None:
-                linear = 2 * self._quantised.astype("i8") - self._previous
-                predictions[_LINEAR] = np.clip(linear, -MAX_QUANTISED, MAX_QUANTISED)
-        quantised = np.empty((nodes, 3), "<i4")
+                linear = 2 * self._quantised.astype("i8") - self._previous  # wraps if exact
+                if not exact:
+                    linear = np.clip(linear, -MAX_QUANTISED, MAX_QUANTISED)
+                predictions[_LINEAR] = linear
+        quantised = np.empty((nodes, 3), "<i8" if exact else "<i4")
         for index, chunk in enumerate(chunks):
             first = index * chunk_nodes
             count = min(chunk_nodes, nodes - first)
@@ -213,13 +220,17 @@ class FrameDecoder:
                 chunk.type != POSITIONS
                 or (chunk.first, chunk.count) != (first, count)
                 or rest != 0
-                or planes > 4
+                or planes > quantised.itemsize
                 or chunk.prediction not in predictions
             ):
                 raise DamagedError("positions section does not fit its frame")
             residuals = residuals_of_planes(chunk, planes, count)
             values = predictions[chunk.prediction][first : first + count].astype("i8") + residuals
-            if np.abs(values).max() > MAX_QUANTISED:
+            if exact:
+                within = np.isfinite(_of_ranks(values)).all()
+            else:
+                within = np.abs(values).max() <= MAX_QUANTISED
+            if not within:
                 raise DamagedError("a decoded coordinate is out of range")
             quantised[first : first + count] = values
         return quantised
@@ -300,6 +311,16 @@ class FrameDecoder:
             len(broken),
         )
         return xxh3_64(self._header_bytes + fields + quantised.tobytes() + broken.tobytes())
+
+
+def _ranks_of(values):
+    """FORMAT.md section 4: doubles as their ranks."""
+    bits = np.ascontiguousarray(values, "<f8").view("<i8")
+    return bits ^ ((bits >> 63) & 0x7FFFFFFFFFFFFFFF)
+
+
+def _of_ranks(ranks):
+    return (ranks ^ ((ranks >> 63) & 0x7FFFFFFFFFFFFFFF)).astype("<i8").view("<f8")
 
 
 def edges_of(tets):

@@ -300,7 +300,7 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
       {"quality.step_tolerance", [](Scene& s) { s.quality.step_tolerance = 0; }},
       {"quality.linear_tolerance", [](Scene& s) { s.quality.linear_tolerance = kNan; }},
       {"quality.max_step_halvings", [](Scene& s) { s.quality.max_step_halvings = 21; }},
-      {"output.tolerance", [](Scene& s) { s.output.tolerance = 0; }},
+      {"output.tolerance", [](Scene& s) { s.output.tolerance = -1e-9; }},
       {"output.keyframe_interval", [](Scene& s) { s.output.keyframe_interval = 0; }},
       {"output.checkpoint_interval", [](Scene& s) { s.output.checkpoint_interval = -5; }},
   };

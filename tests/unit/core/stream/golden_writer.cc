@@ -147,12 +147,12 @@ std::string Raw(const std::vector<Vec3>& positions) {
 }
 
 absl::Status Write(const GoldenStream& golden) {
-  const bool lattice = golden.predictor_id == kPredictorInterpolation;
+  const bool lattice = golden.interpolates();
   const GoldenBody body = lattice ? LatticeBody() : TemporalBody();
   const auto header = MakeStreamHeader({.mesh_sha256 = std::string(32, '\x5a'),
                                         .edge_count = body.edges.size(),
                                         .tet_count = 120,
-                                        .tolerance = kGoldenTolerance,
+                                        .tolerance = golden.exact() ? 0 : kGoldenTolerance,
                                         .keyframe_interval = 5,
                                         .chunk_nodes = 60,
                                         .predictor_id = golden.predictor_id,
@@ -172,7 +172,7 @@ absl::Status Write(const GoldenStream& golden) {
   for (size_t at = 0; at < numbers.size(); ++at) {
     absl::Status status;
     if (at == 10) status.Update(encoder->StartEpoch(1));
-    if (at == 12) status.Update(encoder->SetTolerance(kGoldenFinerTolerance));
+    if (at == 12 && !golden.exact()) status.Update(encoder->SetTolerance(kGoldenFinerTolerance));
     if (!status.ok()) return status;
     Frame frame = lattice ? LatticeFrame(body, numbers[at], at == 12, golden.crumbles)
                           : TemporalFrame(body, numbers[at]);
