@@ -5,11 +5,9 @@
 #include <system_error>
 #include <vector>
 
-#include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
 #include "client/cli/json_line.h"
+#include "core/base/frame_line.h"
 
 namespace cleave {
 namespace {
@@ -38,14 +36,6 @@ void AddPart(const v1::Piece& part, JsonLine& line) {
   line.Add("volume", part.volume())
       .Add("node_count", part.node_count())
       .Add("first_node", int64_t{part.first_node()});
-}
-
-// The frame that a line is of, or -1.
-int64_t FrameOf(absl::string_view line) {
-  int64_t frame = -1;
-  if (!absl::ConsumePrefix(&line, "{\"frame\":") || !absl::EndsWith(line, "}")) return -1;
-  if (!absl::SimpleAtoi(line.substr(0, line.find_first_of(",}")), &frame)) return -1;
-  return frame;
 }
 
 }  // namespace
@@ -86,7 +76,7 @@ absl::StatusOr<std::unique_ptr<EventFile>> EventFile::Open(const std::string& pa
     size_t size = 0;
     int64_t before = 0;
     for (size_t end; (end = bytes.find('\n', size)) != std::string::npos; size = end + 1) {
-      const int64_t frame = FrameOf(absl::string_view(bytes).substr(size, end - size));
+      const int64_t frame = FrameOfLine(absl::string_view(bytes).substr(size, end - size));
       if (frame < before || frame > last_frame) break;
       before = frame;
     }

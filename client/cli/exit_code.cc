@@ -24,6 +24,7 @@ ExitCode ExitCodeOf(const absl::Status& status, int signal) {
       return ExitCode::kOk;
     case absl::StatusCode::kInvalidArgument:
     case absl::StatusCode::kOutOfRange:
+    case absl::StatusCode::kDataLoss:
       return ExitCode::kInvalidInput;
     case absl::StatusCode::kUnavailable:
     case absl::StatusCode::kDeadlineExceeded:
@@ -48,7 +49,8 @@ std::string ExitCodeHelp() {
          "  0    done\n"
          "  1    something else went wrong (a file could not be written, ...)\n"
          "  2    the command line is wrong\n"
-         "  3    the scene, the mesh or a value is invalid; every fault is a line on stderr\n"
+         "  3    the scene, the mesh or a value is invalid, every fault a line on stderr; or a file\n"
+         "       is damaged\n"
          "  4    no server answers\n"
          "  5    the simulation failed; the frames so far are safe\n"
          "  6    no such file or session\n"

@@ -13,7 +13,7 @@ enum class ExitCode {
   kOk = 0,
   kOther = 1,             // a file could not be written, a bug
   kUsage = 2,             // the command line
-  kInvalidInput = 3,      // scene, mesh or a value in them
+  kInvalidInput = 3,      // scene, mesh or a value in them; a damaged file
   kUnreachable = 4,       // no server answers, or it went away for good
   kSimulationFailed = 5,  // the run cannot go on; its frames so far are safe
   kNotFound = 6,          // no such file or session

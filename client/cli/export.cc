@@ -4,7 +4,9 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -37,6 +39,7 @@ struct Options {
   std::optional<double> render_scale;
   std::optional<double> rate;
   bool velocities = false;
+  std::vector<std::string> of_frames;  // those given that no plot has a use for
 };
 
 const std::map<std::string, BakeFormat>& BakeFormats() {
@@ -98,6 +101,11 @@ absl::Status CheckFormat(const Options& options) {
   goes_with(!options.render_mesh.empty(), "--render-mesh", {"vtu", "ply", "obj"});
   goes_with(options.rate.has_value(), "--rate", {"bake-mdd", "glb", "usda"});
   goes_with(options.velocities, "--velocities", {"bake-pc2", "bake-mdd", "glb"});
+  goes_with(!options.reports.empty(), "--reports", {"plot"});
+  if (options.format == "plot") {
+    for (const std::string& option : options.of_frames)
+      faults.Error(option, "goes with frames, not with plot, which is of the whole run");
+  }
   if (options.name.empty() || options.name.find('/') != std::string::npos)
     faults.Error("--name",
                  absl::StrCat("\"", options.name, "\" is no name of a file: --to says where"));
@@ -219,7 +227,9 @@ void AddExport(CLI::App& app, Program& program) {
       "  cleave export out/bar --format ply --first 10 --last 10 --to now\n"
       "  cleave export out/bar --format bake-pc2\n"
       "  cleave export out/bar --format glb --rate 24\n");
-  verb->callback([options, &program] {
+  verb->callback([options, verb, &program] {
+    for (const char* option : {"--first", "--last", "--stride", "--name", "--mesh", "--unit-scale"})
+      if (verb->count(option) > 0) options->of_frames.emplace_back(option);
     program.action = [options](Program& shared) { return Export(shared, *options); };
   });
 }

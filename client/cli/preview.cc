@@ -180,13 +180,14 @@ void AddPreview(CLI::App& app, Program& program) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("METRES");
-  verb->add_option("--color", options->look.color_by, "What colours tell")
+  verb->add_option("--color", options->look.color_by, "What colours tell; default: region")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, ColorBy>{{"region", ColorBy::kRegion},
                                                                  {"piece", ColorBy::kPiece},
                                                                  {"strain", ColorBy::kStrain},
                                                                  {"damage", ColorBy::kDamage},
-                                                                 {"impurity", ColorBy::kImpurity}}))
+                                                                 {"impurity", ColorBy::kImpurity}})
+              .description(""))
       ->type_name("region|piece|strain|damage|impurity");
   verb->add_option("--width", options->look.width, "Pixels of a picture, or of a sheet's tile")
       ->check(CLI::Range(16, kMaxImageSide))

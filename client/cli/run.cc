@@ -1,4 +1,6 @@
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "client/cli/server_access.h"
 #include "client/cli/session_mesh.h"
 #include "client/cli/session_start.h"
+#include "client/io/series/write_aside.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -148,10 +151,11 @@ class Run {
         absl::StrCat(folder_.server_data(), "/", session_.name(), "/reports.jsonl");
     std::error_code error;
     if (!std::filesystem::exists(source, error)) return absl::OkStatus();
-    std::filesystem::copy_file(source, folder_.reports(),
-                               std::filesystem::copy_options::overwrite_existing, error);
-    if (error) return absl::InternalError(absl::StrCat(source, ": ", error.message()));
-    return absl::OkStatus();
+    // Not a copy of the file: that one is the server's alone to read.
+    std::ifstream in(source, std::ios::binary);
+    const std::string lines((std::istreambuf_iterator<char>(in)), {});
+    if (!in) return absl::InternalError(absl::StrCat(source, " cannot be read"));
+    return WriteAside(folder_.reports(), lines);
   }
 
   absl::Status Conclude(const FollowResult& result) {

@@ -125,8 +125,11 @@ absl::Status StreamFileReader::Seek(size_t position, FrameDecoder& decoder) cons
     }
   }
   for (; next <= position; ++next) {
-    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFrame(next));
-    CLEAVE_RETURN_IF_ERROR(decoder.Apply(bytes));
+    const absl::StatusOr<std::string> bytes = ReadFrame(next);
+    const absl::Status status = bytes.ok() ? decoder.Apply(*bytes) : bytes.status();
+    if (!status.ok())
+      return absl::Status(status.code(),
+                          absl::StrCat("frame ", rows_[next].frame, ": ", status.message()));
   }
   return absl::OkStatus();
 }

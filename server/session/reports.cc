@@ -2,24 +2,14 @@
 
 #include <fcntl.h>
 
-#include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
+#include "core/base/frame_line.h"
 #include "core/base/status.h"
 
 namespace cleave {
 namespace {
 
 constexpr int64_t kMaxReportBytes = int64_t{1} << 34;
-
-// The frame that a line reports, or -1.
-int64_t FrameOf(absl::string_view line) {
-  int64_t frame = -1;
-  if (!absl::ConsumePrefix(&line, "{\"frame\":") || !absl::EndsWith(line, "}")) return -1;
-  if (!absl::SimpleAtoi(line.substr(0, line.find_first_of(",}")), &frame)) return -1;
-  return frame;
-}
 
 }  // namespace
 
@@ -29,7 +19,7 @@ absl::StatusOr<Reports> Reports::Open(const std::string& path, int64_t head) {
   int64_t last_frame = 0;
   size_t size = 0;
   for (size_t end; (end = bytes.find('\n', size)) != std::string::npos; size = end + 1) {
-    const int64_t frame = FrameOf(absl::string_view(bytes).substr(size, end - size));
+    const int64_t frame = FrameOfLine(absl::string_view(bytes).substr(size, end - size));
     if (frame <= last_frame || frame > head) break;
     last_frame = frame;
   }

@@ -417,6 +417,34 @@ class EmbeddedRuns(CliTest):
         self.assertEqual(code, 3)
         self.assertIn("--render-mesh: goes with --format obj, ply, vtu, not glb", errors)
 
+    def test_damaged_frame_is_named_and_exits_3_and_files_follow_the_umask(self):
+        out = self.folder / "out"
+        self.assertEqual(cleave("run", self.scene(BLOCK % 4), "--out", out, "-q")[0], 0)
+        modes = {path.name: path.stat().st_mode & 0o777 for path in out.iterdir()
+                 if path.is_file()}
+        self.assertEqual(set(modes.values()), {0o666 & ~self.umask()}, modes)
+        frames = bytearray((out / "frames.clv").read_bytes())
+        offset, = struct.unpack_from("<Q", frames, len(frames) - 24)  # of the index
+        third, = struct.unpack_from("<Q", frames, offset + 16 + 3 * 80 + 24)
+        frames[third + 200] ^= 1
+        (out / "frames.clv").write_bytes(frames)
+        code, _, errors = cleave("export", out, "--format", "ply")
+        self.assertEqual(code, 3, errors)
+        self.assertIn("frames.clv: frame 3: ", errors)
+        code, _, errors = cleave("export", out, "--format", "plot", "--first", "1", "--stride", "2")
+        self.assertEqual(code, 3)
+        self.assertIn("--first: goes with frames", errors)
+        self.assertIn("--stride: goes with frames", errors)
+        code, _, errors = cleave("export", out, "--reports", out / "reports.jsonl")
+        self.assertEqual(code, 3)
+        self.assertIn("--reports: goes with --format plot, not vtu", errors)
+
+    @staticmethod
+    def umask():
+        mask = os.umask(0)
+        os.umask(mask)
+        return mask
+
     def test_other_scene_in_the_same_folder_is_refused_unless_fresh(self):
         out = self.folder / "out"
         self.assertEqual(cleave("run", self.scene(BLOCK % 2), "--out", out, "-q")[0], 0)

@@ -13,6 +13,7 @@ namespace {
 TEST(ExitCode, EveryKindOfFailureHasItsNumber) {
   EXPECT_EQ(ExitCodeOf(absl::OkStatus(), 0), ExitCode::kOk);
   EXPECT_EQ(ExitCodeOf(absl::InvalidArgumentError(""), 0), ExitCode::kInvalidInput);
+  EXPECT_EQ(ExitCodeOf(absl::DataLossError(""), 0), ExitCode::kInvalidInput);
   EXPECT_EQ(ExitCodeOf(absl::UnavailableError(""), 0), ExitCode::kUnreachable);
   EXPECT_EQ(ExitCodeOf(absl::NotFoundError(""), 0), ExitCode::kNotFound);
   EXPECT_EQ(ExitCodeOf(absl::FailedPreconditionError(""), 0), ExitCode::kState);
