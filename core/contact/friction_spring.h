@@ -23,12 +23,13 @@ struct FrictionSpring {
     const double length = stretch.norm();
     return -(Sticks(length) ? stiffness : cap / length) * stretch;
   }
-  // N/m, in the plane across the unit normal; positive semidefinite.
+  // N/m, in the plane across the unit normal: that of the parabola which touches the energy at this
+  // stretch and lies above it everywhere. The energy's own curvature along a stretch that slips is
+  // 0, whatever waits beyond the turning point, and steps that trust it go far too far.
   Eigen::Matrix3d Stiffness(const Eigen::Vector3d& stretch, const Eigen::Vector3d& normal) const {
     const Eigen::Matrix3d plane = Eigen::Matrix3d::Identity() - normal * normal.transpose();
     const double length = stretch.norm();
-    if (Sticks(length)) return stiffness * plane;
-    return cap / length * (plane - stretch * stretch.transpose() / (length * length));
+    return (Sticks(length) ? stiffness : cap / length) * plane;
   }
   // The stretch that is left when what is beyond either cap has slipped away.
   Eigen::Vector3d Kept(const Eigen::Vector3d& stretch, double next_cap) const {
