@@ -114,11 +114,13 @@ void NewtonSolver::EvaluateNodeTerms(const NodalVector& displacements) {
   ForAll([&](int64_t begin, int64_t end) {
     std::fill(node_forces_.begin() + begin, node_forces_.begin() + end, Splat(0));
   });
+  node_energy_ = 0;
   for (const auto& term : model_.node_terms) {
     const double energy = term->AddForces(displacements, node_forces_);
-    energy_ += energy;
+    node_energy_ += energy;
     energy_magnitude_ += std::abs(energy);
   }
+  energy_ += node_energy_;
   force_scale_ += std::sqrt(Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
     Double4 sum = Splat(0);
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {

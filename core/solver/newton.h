@@ -54,6 +54,8 @@ class NewtonSolver {
   const NodalVector& outer_forces() const { return gradient_; }
   // N, of the node terms, there; empty where the model has none.
   const NodalVector& node_forces() const { return node_forces_; }
+  // J, of the node terms, there; 0 where the model has none.
+  double node_energy() const { return node_energy_; }
   double elastic_energy() const { return elastic_energy_; }
   // J, by which that Solve lowered the incremental potential.
   double decrease() const { return initial_energy_ - energy_; }
@@ -104,6 +106,7 @@ class NewtonSolver {
   double energy_magnitude_ = 0;  // J, sum of the sizes of its terms, weighted by their rounding
   double elastic_energy_ = 0;    // J
   double initial_elastic_energy_ = 0;
+  double node_energy_ = 0;
   double residual_norm_ = 0;     // N
   double rounding_energy_ = 0;   // J, what rounding may hide of the elastic energy
   double rounding_force_ = 0;    // N, and of the forces

@@ -148,6 +148,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   double integration = elastic_energy_ - newton_.elastic_energy() - left_out_energy_ -
                        newton_.ElasticWork(state, dt, displacements_);
   const KineticEnergies intact = MovingEnergies(dt, state);
+  const double node_balance = NodeTermBalance(state);
   KineticEnergies moving = intact;
   double fracture_energy = 0;
   std::vector<EdgeBreak> breaks;
@@ -156,6 +157,9 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   } else if (breaking_) {
     CLEAVE_RETURN_IF_ERROR(Break(dt, stop, state, fracture_energy, integration, breaks, report));
     moving = MovingEnergies(dt, state);
+    // Node terms tell below what they did up to where the last solve ended; the motion that the
+    // first one found is what their forces then drove.
+    integration += NodeTermBalance(state) - node_balance;
   } else {
     Flow();
   }
@@ -271,6 +275,14 @@ double Stepper::GravityWork(const State& state) const {
   for (size_t node = 0; node < displacements_.size(); ++node)
     sum += model_.masses[node] * (displacements_[node] - state.displacements[node]);
   return Dot(sum, ToDouble4(*model_.gravity));
+}
+
+double Stepper::NodeTermBalance(const State& state) const {
+  const NodalVector& forces = newton_.node_forces();
+  double sum = newton_.node_energy();
+  for (size_t node = 0; node < forces.size(); ++node)
+    sum += Dot(forces[node], displacements_[node] - state.displacements[node]);
+  return sum;
 }
 
 double Stepper::EndRest(double dt, double plastic_work, State& state) {

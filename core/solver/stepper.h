@@ -82,6 +82,8 @@ class Stepper {
   // J, over the step from `state` to `displacements_`.
   double MotionWork(const State& state) const;
   double GravityWork(const State& state) const;
+  // J, over the same step: what node terms did and hold at its end.
+  double NodeTermBalance(const State& state) const;
 
   const Model& model_;
   NewtonSolver newton_;
