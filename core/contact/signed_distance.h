@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "core/contact/surface_distance.h"
+#include "core/mesh/surface_distance.h"
 #include "core/scene/scene.h"
 
 namespace cleave {

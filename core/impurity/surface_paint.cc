@@ -4,11 +4,32 @@
 #include <numeric>
 
 #include "core/base/parallel.h"
-#include "core/contact/surface_distance.h"
 #include "core/impurity/falloff.h"
+#include "core/impurity/texture.h"
 #include "core/mesh/boundary_faces.h"
+#include "core/mesh/surface_distance.h"
 
 namespace cleave {
+namespace {
+
+double VertexShareOf(const std::vector<double>& shares, const std::array<int32_t, 3>& vertices,
+                     const std::array<double, 3>& weights) {
+  double share = 0;
+  for (size_t i = 0; i < 3; ++i) share += weights[i] * shares[static_cast<size_t>(vertices[i])];
+  return share;
+}
+
+double TextureShareOf(const SurfaceTexture& texture, size_t triangle,
+                      const std::array<double, 3>& weights) {
+  double u = 0, v = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    u += weights[i] * static_cast<double>(texture.uvs[triangle][2 * i]);
+    v += weights[i] * static_cast<double>(texture.uvs[triangle][2 * i + 1]);
+  }
+  return TextureShare(texture, u, v);
+}
+
+}  // namespace
 
 std::vector<double> PaintShares(const SurfacePaint& paint, const ImpurityLayer& layer,
                                 const TetMesh& mesh) {
@@ -26,11 +47,10 @@ std::vector<double> PaintShares(const SurfacePaint& paint, const ImpurityLayer& 
       const auto node = static_cast<size_t>(n);
       const SurfacePoint closest =
           surface.ClosestPoint(Eigen::Vector3d(mesh.rest_positions[node].data()));
-      double share = 0;
-      for (size_t i = 0; i < 3; ++i) {
-        const int32_t vertex = triangles[static_cast<size_t>(closest.triangle)][i];
-        share += closest.weights[i] * paint.shares[static_cast<size_t>(vertex)];
-      }
+      const auto triangle = static_cast<size_t>(closest.triangle);
+      const double share = paint.texture
+                               ? TextureShareOf(*paint.texture, triangle, closest.weights)
+                               : VertexShareOf(paint.shares, triangles[triangle], closest.weights);
       shares[node] = share * ShareAt(closest.distance - paint.depth, layer);
     }
   });

@@ -116,6 +116,32 @@ struct SegmentPattern {
   std::optional<double> depth;        // m, as of strokes
 };
 
+// What a texture shows beyond its border.
+enum class TextureWrap {
+  kRepeat,
+  kClamp,   // the texel at the border
+  kMirror,  // itself, every other time reflected
+};
+
+// Which part of a picture is the share.
+enum class TextureChannel { kLuminance, kRed, kGreen, kBlue, kAlpha };
+
+// A picture on a surface by texture coordinates, linear between the middles of texels.
+struct SurfaceTexture {
+  int32_t width = 0;            // texels
+  int32_t height = 0;           // texels
+  std::vector<uint8_t> values;  // a texel each, rows from the top; 255 is share 1
+  // u, v of the three corners, a triangle each; (0, 0) is the picture's lower left corner, (1, 1)
+  // its upper right.
+  std::vector<std::array<float, 6>> uvs;
+  TextureWrap wrap = TextureWrap::kRepeat;
+  bool invert = false;  // shares are 1 less the values
+  // In place of size and values, a PNG or JPEG beside the scene file, and what of it counts;
+  // clients read it.
+  std::string file = {};
+  TextureChannel channel = TextureChannel::kLuminance;
+};
+
 // Values on a surface, carried inward like a volumetric texture: within `depth` every node has the
 // value of the closest point of the surface.
 struct SurfacePaint {
@@ -125,10 +151,11 @@ struct SurfacePaint {
   std::vector<Vec3> vertices;                     // m; of a triangle surface
   std::vector<std::array<int32_t, 3>> triangles;  // of vertices, from 0
   double depth = 0;                               // m
-  // In place of shares, vertices and triangles, a PLY surface beside the scene file and the
-  // property of its vertices; clients read it.
+  // In place of vertices and triangles, a surface beside the scene file, and the property of its
+  // vertices that is the shares; clients read it.
   std::string file = {};
   std::string array = {};
+  std::optional<SurfaceTexture> texture = std::nullopt;  // in place of shares
 };
 
 using ImpuritySource = std::variant<std::monostate, NodeValues, NoiseField, BandField, PocketField,

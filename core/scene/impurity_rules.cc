@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/mesh/surface_distance.h"
 #include "core/scene/checker.h"
 #include "core/scene/impurity_blades.h"
 #include "core/scene/limits.h"
@@ -142,7 +143,11 @@ struct ImpuritySourceRules {
   void operator()(const SurfacePaint& paint) {
     check.Above(At("paint.depth"), paint.depth, 0, limits::kMaxLength);
     if (Unread(At("paint.file"), paint.file)) return;
-    Shares(At("paint.shares"), paint.shares);
+    if (paint.texture) {
+      Texture(paint, *paint.texture);
+    } else {
+      Shares(At("paint.shares"), paint.shares);
+    }
     if (paint.vertices.empty() != paint.triangles.empty()) {
       faults.Error(At("paint.triangles"),
                    "a painted surface has vertices and triangles; the mesh's own has neither");
@@ -152,7 +157,7 @@ struct ImpuritySourceRules {
     if (!check.List(At("paint.triangles"), paint.triangles.size(), limits::kMaxPaintTriangles) ||
         !check.List(At("paint.vertices"), paint.vertices.size(), 3 * limits::kMaxPaintTriangles))
       return;
-    if (paint.shares.size() != paint.vertices.size()) {
+    if (!paint.texture && paint.shares.size() != paint.vertices.size()) {
       faults.Error(At("paint.shares"),
                    absl::StrCat("has ", paint.shares.size(), " shares; the surface has ",
                                 paint.vertices.size(), " vertices"));
@@ -163,6 +168,39 @@ struct ImpuritySourceRules {
     for (size_t k = 0; k < paint.triangles.size(); ++k) {
       for (const int32_t vertex : paint.triangles[k])
         check.Count(cleave::At(At("paint.triangles"), k), vertex, 0, count - 1);
+    }
+  }
+  void Texture(const SurfacePaint& paint, const SurfaceTexture& texture) {
+    const std::string field = At("paint.texture");
+    if (!paint.shares.empty())
+      faults.Error(At("paint.shares"), "stand beside a texture; give one of both");
+    if (paint.vertices.empty()) {
+      faults.Error(At("paint.vertices"),
+                   "is empty; a texture needs a surface, whose triangles have its coordinates");
+    }
+    if (texture.uvs.size() != paint.triangles.size()) {
+      faults.Error(field + ".uvs",
+                   absl::StrCat("has coordinates of ", texture.uvs.size(),
+                                " triangles; the surface has ", paint.triangles.size()));
+    }
+    for (size_t k = 0; k < texture.uvs.size(); ++k) {
+      for (const float coordinate : texture.uvs[k])
+        check.Within(cleave::At(field + ".uvs", k), coordinate, -limits::kMaxTextureCoordinate,
+                     limits::kMaxTextureCoordinate);
+    }
+    if (Unread(field + ".file", texture.file)) return;
+    if (texture.channel != TextureChannel::kLuminance)
+      faults.Error(field + ".channel", "is of a file, and there is none");
+    check.Count(field + ".width", texture.width, 1, limits::kMaxTextureSide);
+    check.Count(field + ".height", texture.height, 1, limits::kMaxTextureSide);
+    const int64_t texels = int64_t{texture.width} * texture.height;
+    if (texels > limits::kMaxTexels) {
+      faults.Error(field, absl::StrCat("has ", texels, " texels; at most ", limits::kMaxTexels,
+                                       " are allowed"));
+    } else if (static_cast<int64_t>(texture.values.size()) != texels) {
+      faults.Error(field + ".values",
+                   absl::StrCat("has ", texture.values.size(), " bytes; ", texture.width, " x ",
+                                texture.height, " texels have ", texels));
     }
   }
 };
@@ -222,9 +260,14 @@ void CheckHits(const std::string& field, const ImpurityLayer& layer, const TetMe
   }
 }
 
-// A painted surface whose reach ends before the body begins.
+// A painted surface that no node is in reach of, as of one in another unit.
 void CheckPaintReach(const std::string& field, const SurfacePaint& paint, double reach,
                      const TetMesh& mesh, Faults& faults) {
+  const auto refuse = [&] {
+    faults.Error(field, absl::StrCat("its surface is farther than ", reach,
+                                     " m, depth and falloff, from every node of the body; "
+                                     "`unit_scale` says what its unit is"));
+  };
   for (size_t axis = 0; axis < 3; ++axis) {
     const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
     const auto [low, high] =
@@ -232,10 +275,9 @@ void CheckPaintReach(const std::string& field, const SurfacePaint& paint, double
     const auto [first, last] =
         std::minmax_element(paint.vertices.begin(), paint.vertices.end(), less);
     if ((*first)[axis] - reach <= (*high)[axis] && (*last)[axis] + reach >= (*low)[axis]) continue;
-    faults.Error(field, absl::StrCat("its surface is farther than ", reach,
-                                     " m, depth and falloff, from the body"));
-    return;
+    return refuse();
   }
+  if (!SurfaceReaches(paint.vertices, paint.triangles, reach, mesh.rest_positions)) refuse();
 }
 
 }  // namespace
@@ -286,7 +328,10 @@ void CheckImpuritiesOfMesh(const Impurities& impurities, const TetMesh& mesh, Fa
       if (paint->vertices.empty()) {
         check_count(field + ".paint.shares", paint->shares.size());
       } else {
-        CheckPaintReach(field + ".paint", *paint, paint->depth + layer.falloff, mesh, faults);
+        Faults own;
+        ImpuritySourceRules{field, own, Checker(own)}(*paint);
+        if (own.ok())
+          CheckPaintReach(field + ".paint", *paint, paint->depth + layer.falloff, mesh, faults);
       }
     } else if (std::holds_alternative<Strokes>(layer.source) ||
                std::holds_alternative<SegmentPattern>(layer.source)) {

@@ -25,10 +25,13 @@ inline constexpr double kMaxPotency = 100;          // strength stops changing w
 inline constexpr double kMaxPotencyNoise = 10;
 inline constexpr double kMaxSteepness = 100;  // k: strengths span a factor of 2 k
 inline constexpr double kMaxPureOffset = 10;  // a0: impure and pure hardly differ from here on
-inline constexpr int64_t kMaxImpurityLayers = 100;  // each is a pass over nodes and edges
-inline constexpr int64_t kMaxPockets = 10'000;  // nodes look at all that are near
+inline constexpr int64_t kMaxImpurityLayers = 100;   // each is a pass over nodes and edges
+inline constexpr int64_t kMaxPockets = 10'000;       // nodes look at all that are near
 inline constexpr int64_t kMaxBladePoints = 100'000;  // of a layer; edges look at all that are near
 inline constexpr int64_t kMaxPaintTriangles = 2'000'000;  // sent inside the scene
+inline constexpr int64_t kMaxTextureSide = 65'536;        // texels
+inline constexpr int64_t kMaxTexels = int64_t{1} << 24;   // sent inside the scene
+inline constexpr double kMaxTextureCoordinate = 1e4;      // floats have a texel's digits below it
 inline constexpr double kMaxDrawingUnit = 1e6;            // coordinates of a drawing
 // b of Basquin's law: beyond it life hardly depends on load, or jumps from 0 to infinity with it.
 inline constexpr double kMinFatigueExponent = -1;

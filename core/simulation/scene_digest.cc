@@ -113,6 +113,14 @@ void PutImpuritySource(const ImpuritySource& source, ByteWriter& out) {
     out.PutVector(paint->vertices);
     out.PutVector(paint->triangles);
     out.Put(paint->depth);
+    if (paint->texture) {
+      out.Put(paint->texture->width);
+      out.Put(paint->texture->height);
+      out.PutVector(paint->texture->values);
+      out.PutVector(paint->texture->uvs);
+      out.Put(static_cast<uint32_t>(paint->texture->wrap));
+      out.Put<uint8_t>(paint->texture->invert);
+    }
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/scene/checker.h"
+#include "core/scene/limits.h"
 #include "proto/convert/field_reader.h"
 
 namespace cleave {
@@ -96,11 +98,32 @@ class LayerReader {
     SurfacePaint paint;
     paint.shares = Values(message.shares());
     paint.vertices = read_.Groups<3>(At("paint.vertices"), message.vertices());
+    if (message.has_unit_scale()) {
+      Checker(read_.faults())
+          .Above(At("paint.unit_scale"), message.unit_scale(), 0, limits::kMaxUnitScale);
+      for (Vec3& vertex : paint.vertices)
+        for (double& coordinate : vertex) coordinate *= message.unit_scale();
+    }
     paint.triangles = read_.Groups<3>(At("paint.triangles"), message.triangles());
     paint.depth = message.depth();
     paint.file = message.file();
     paint.array = message.array();
+    if (message.has_texture()) paint.texture = Texture(message.texture());
     return paint;
+  }
+
+  SurfaceTexture Texture(const v1::SurfaceTexture& message) {
+    SurfaceTexture texture;
+    texture.width = message.width();
+    texture.height = message.height();
+    texture.values.assign(message.values().begin(), message.values().end());
+    texture.uvs = read_.Groups<6>(At("paint.texture.uvs"), message.uvs());
+    texture.wrap = read_.AfterUnspecified<TextureWrap>(At("paint.texture.wrap"), message.wrap(), 3);
+    texture.invert = message.invert();
+    texture.file = message.file();
+    texture.channel =
+        read_.AfterUnspecified<TextureChannel>(At("paint.texture.channel"), message.channel(), 5);
+    return texture;
   }
 
   const std::string field_;
@@ -178,6 +201,18 @@ struct WriteImpuritySource {
     to.set_depth(paint.depth);
     to.set_file(paint.file);
     to.set_array(paint.array);
+    if (!paint.texture) return;
+    v1::SurfaceTexture& texture = *to.mutable_texture();
+    texture.set_width(paint.texture->width);
+    texture.set_height(paint.texture->height);
+    texture.set_values(std::string(paint.texture->values.begin(), paint.texture->values.end()));
+    for (const auto& corners : paint.texture->uvs)
+      texture.mutable_uvs()->Add(corners.begin(), corners.end());
+    texture.set_wrap(static_cast<v1::TextureWrap>(static_cast<int>(paint.texture->wrap) + 1));
+    texture.set_invert(paint.texture->invert);
+    texture.set_file(paint.texture->file);
+    texture.set_channel(
+        static_cast<v1::TextureChannel>(static_cast<int>(paint.texture->channel) + 1));
   }
 };
 

@@ -252,6 +252,30 @@ class Impurities(CliTest):
         self.assertIn("impurities.layers[0].pattern.image.file", errors)
         self.assertIn("no pixel is darker than the threshold", errors)
 
+    def test_texture_paints_the_surface_of_a_body(self):
+        # A quad over the block, of two triangles; the right half of its picture is drawn.
+        (self.folder / "top.obj").write_text(
+            "v 0 0 10\nv 40 0 10\nv 40 10 10\nv 0 10 10\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+            "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
+        (self.folder / "half.png").write_bytes(grey_png([[0] * 8 + [255] * 8] * 4))
+        layer = {"potency": 2, "weakening": "Infinity",
+                 "paint": {"file": "top.obj", "unit_scale": 0.01, "depth": 1,
+                           "texture": {"file": "half.png", "wrap": "TEXTURE_WRAP_CLAMP"}}}
+        scene = self.scene((BLOCK % 1).replace('"density"', '"tensile_strength": 3e4, "density"'))
+        code, output, errors = cleave("impurity", scene, "--layer", json.dumps(layer), "--json")
+        self.assertEqual(code, 0, errors)
+        answer = json.loads(output)
+        self.assertEqual(answer["weakenings"].count("Infinity") +
+                         answer["weakenings"].count(1), len(answer["weakenings"]))
+        self.assertIn("Infinity", answer["weakenings"])
+        # Four of nine layers of nodes on either side of the middle.
+        self.assertEqual(answer["potencies"].count(0), 4 * 9)
+        self.assertEqual(answer["potencies"].count(2), 4 * 9)
+        del layer["paint"]["unit_scale"]
+        code, _, errors = cleave("impurity", scene, "--layer", json.dumps(layer))
+        self.assertEqual(code, 3)
+        self.assertIn("impurities.layers[0].paint: its surface is farther than 1 m", errors)
+
     def test_bad_layers_are_refused_by_name(self):
         scene = self.scene(BLOCK % 1)
         miss = dict(STROKE, strokes={"curves": [{"points": [9, 0, 0, 9, 1, 0]}]})

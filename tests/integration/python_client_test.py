@@ -21,6 +21,7 @@ sys.path.insert(1, STUBS)
 import first_steps  # noqa: E402
 import grpc  # noqa: E402
 import numpy as np  # noqa: E402
+from google.protobuf import json_format  # noqa: E402
 
 from cleave.client import CleaveError, Client  # noqa: E402
 from cleave.events import read_events  # noqa: E402
@@ -201,6 +202,24 @@ class PythonClientTest(unittest.TestCase):
         scene.impurities.layers[0].CopyFrom(
             layer(node_values=scene_pb2.NodeValues(shares=shares)))
         np.testing.assert_allclose(self.client.preview_impurity(scene).potencies, 4 * shares)
+
+        # The upper half of a picture on the side of the box, and no end of strength.
+        picture = np.zeros((8, 8), np.uint8)
+        picture[:4] = 255
+        scene.impurities.layers[0].CopyFrom(layer(paint=scene_pb2.SurfacePaint(
+            depth=2, vertices=[0, 0, 0, 1, 0, 0, 1, 0.5, 0, 0, 0.5, 0], triangles=[0, 1, 2, 0, 2, 3],
+            texture=scene_pb2.SurfaceTexture(
+                width=8, height=8, values=picture.tobytes(), wrap=scene_pb2.TEXTURE_WRAP_CLAMP,
+                uvs=[0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1]))))
+        scene.impurities.layers[0].weakening = float("inf")
+        loaded = json_format.Parse(json_format.MessageToJson(scene), scene_pb2.Scene())
+        self.assertIn('"Infinity"', json_format.MessageToJson(scene))
+        preview = self.client.preview_impurity(loaded, with_edges=True)
+        # Two of five layers of nodes on either side of the middle.
+        self.assertEqual((preview.potencies == 0).sum(), 2 * 9 * 3)
+        self.assertEqual((preview.potencies == 4).sum(), 2 * 9 * 3)
+        self.assertTrue(np.isinf(preview.weakenings[preview.weakenings != 1]).all())
+        self.assertTrue(np.isinf(preview.strongest))
 
         scene.impurities.layers[0].CopyFrom(
             layer(pattern=scene_pb2.SegmentPattern(image=scene_pb2.ImageDrawing(file="star.png"))))

@@ -1,5 +1,6 @@
 #include "client/io/impurity/layer_files.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "absl/status/status.h"
@@ -10,6 +11,7 @@
 #include "client/io/impurity/ply_points.h"
 #include "client/io/mesh/file_bytes.h"
 #include "client/io/mesh/vtu.h"
+#include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -74,7 +76,51 @@ absl::Status ReadNodeValues(const std::string& path, v1::NodeValues& values) {
   return absl::OkStatus();
 }
 
+// Servers take messages of 4 MiB.
+constexpr int kMostTexels = 1024;  // a side
+
+absl::Status ReadTexture(const std::string& path, v1::SurfaceTexture& texture) {
+  const int channel = texture.channel();
+  if (channel < 0 || channel > v1::TextureChannel_MAX)
+    return absl::InvalidArgumentError(absl::StrCat("channel: ", channel, " is none"));
+  CLEAVE_ASSIGN_OR_RETURN(
+      const PictureBytes read,
+      ReadChannelFile(path, static_cast<TextureChannel>(std::max(channel, 1) - 1)));
+  const PictureBytes picture = Reduced(read, kMostTexels);
+  texture.set_width(picture.width);
+  texture.set_height(picture.height);
+  texture.set_values(std::string(picture.values.begin(), picture.values.end()));
+  texture.clear_file();
+  texture.clear_channel();
+  return absl::OkStatus();
+}
+
+// The surface that a texture is on.
+absl::Status ReadTexturedSurface(const std::string& path, v1::SurfacePaint& paint) {
+  if (!paint.array().empty())
+    return absl::InvalidArgumentError("array: has no meaning where a texture has the values");
+  CLEAVE_ASSIGN_OR_RETURN(const SurfaceMesh surface, ReadSurfaceFile(path));
+  if (surface.uvs.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ": has no texture coordinates, or only some of its faces have"));
+  }
+  for (const Vec3& vertex : surface.vertices)
+    paint.mutable_vertices()->Add(vertex.begin(), vertex.end());
+  for (const auto& triangle : surface.triangles)
+    paint.mutable_triangles()->Add(triangle.begin(), triangle.end());
+  for (const auto& corners : surface.uvs) {
+    for (const auto& uv : corners)
+      paint.mutable_texture()->mutable_uvs()->Add(uv.begin(), uv.end());
+  }
+  paint.clear_file();
+  return absl::OkStatus();
+}
+
 absl::Status ReadPaint(const std::string& path, v1::SurfacePaint& paint) {
+  if (!absl::EndsWithIgnoreCase(path, ".ply")) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": values of vertices come in a .ply file; other surfaces need a texture"));
+  }
   CLEAVE_ASSIGN_OR_RETURN(const PlyPoints points, ReadPly(path, paint.array()));
   if (points.triangles.empty())
     return absl::InvalidArgumentError(absl::StrCat(path, ": has no faces; paint needs a surface"));
@@ -115,10 +161,23 @@ std::vector<Fault> ReadLayerFiles(const std::string& folder, v1::Impurities& imp
       v1::NodeValues& values = *layer.mutable_node_values();
       read("node_values.file", values.file(), values.shares_size() > 0,
            [&](const std::string& path) { return ReadNodeValues(path, values); });
-    } else if (!layer.paint().file().empty()) {
+    } else if (layer.has_paint()) {
       v1::SurfacePaint& paint = *layer.mutable_paint();
-      read("paint.file", paint.file(), paint.shares_size() + paint.vertices_size() > 0,
-           [&](const std::string& path) { return ReadPaint(path, paint); });
+      if (!paint.file().empty()) {
+        const bool besides = paint.shares_size() + paint.vertices_size() + paint.triangles_size() +
+                                 paint.texture().uvs_size() >
+                             0;
+        read("paint.file", paint.file(), besides, [&](const std::string& path) {
+          return paint.has_texture() ? ReadTexturedSurface(path, paint) : ReadPaint(path, paint);
+        });
+      }
+      if (!paint.texture().file().empty()) {
+        v1::SurfaceTexture& texture = *paint.mutable_texture();
+        const bool besides =
+            texture.width() != 0 || texture.height() != 0 || !texture.values().empty();
+        read("paint.texture.file", texture.file(), besides,
+             [&](const std::string& path) { return ReadTexture(path, texture); });
+      }
     }
   }
   return faults;

@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "client/io/scene/field_names.h"
@@ -150,6 +152,14 @@ class JsonReader {
         if (scanner_.Peek() != Kind::kString) return Refuse(path, "a string \" \"");
         std::string value;
         if (!scanner_.ReadString(value)) return false;
+        if (field.type() == FieldDescriptor::TYPE_BYTES) {
+          std::string bytes;
+          if (!absl::Base64Unescape(value, &bytes) && !absl::WebSafeBase64Unescape(value, &bytes)) {
+            Report(absl::StrCat(path, ": ", Quoted(value), " is not base64"));
+            return true;
+          }
+          value = std::move(bytes);
+        }
         return Store(message, field, &Reflection::SetString, &Reflection::AddString,
                      std::move(value));
       }
@@ -162,7 +172,10 @@ class JsonReader {
       case FieldDescriptor::CPPTYPE_ENUM:
         return ReadEnum(message, field, path);
       case FieldDescriptor::CPPTYPE_DOUBLE:
-        return ReadDouble(message, field, path);
+        return ReadReal<double>(message, field, path, &Reflection::SetDouble,
+                                &Reflection::AddDouble);
+      case FieldDescriptor::CPPTYPE_FLOAT:
+        return ReadReal<float>(message, field, path, &Reflection::SetFloat, &Reflection::AddFloat);
       case FieldDescriptor::CPPTYPE_INT32:
         return ReadInteger<int32_t>(message, field, path, &Reflection::SetInt32,
                                     &Reflection::AddInt32);
@@ -175,8 +188,6 @@ class JsonReader {
       case FieldDescriptor::CPPTYPE_UINT64:
         return ReadInteger<uint64_t>(message, field, path, &Reflection::SetUInt64,
                                      &Reflection::AddUInt64);
-      case FieldDescriptor::CPPTYPE_FLOAT:
-        break;  // the scene has none
     }
     return Refuse(path, "supported here");
   }
@@ -208,16 +219,29 @@ class JsonReader {
     return true;
   }
 
-  bool ReadDouble(Message& message, const FieldDescriptor& field, const std::string& path) {
+  // JSON has no number for infinity; protobuf's has strings.
+  template <typename Real, typename Set, typename Add>
+  bool ReadReal(Message& message, const FieldDescriptor& field, const std::string& path, Set set,
+                Add add) {
+    constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
+    if (scanner_.Peek() == Kind::kString) {
+      std::string text;
+      if (!scanner_.ReadString(text)) return false;
+      if (text == "Infinity") return Store(message, field, set, add, kInfinity);
+      if (text == "-Infinity") return Store(message, field, set, add, -kInfinity);
+      Report(absl::StrCat(path, ": ", Quoted(text), " is not a number",
+                          absl::StartsWithIgnoreCase(text, "inf") ? "; write \"Infinity\"" : ""));
+      return true;
+    }
     if (scanner_.Peek() != Kind::kNumber) return Refuse(path, "a number");
     absl::string_view digits;
     if (!scanner_.ReadNumber(digits)) return false;
     double value = 0;
-    if (!absl::SimpleAtod(digits, &value) || !std::isfinite(value)) {
+    if (!absl::SimpleAtod(digits, &value) || !std::isfinite(static_cast<Real>(value))) {
       Report(absl::StrCat(path, ": ", digits.substr(0, 60), " is too large for a number"));
       return true;
     }
-    return Store(message, field, &Reflection::SetDouble, &Reflection::AddDouble, value);
+    return Store(message, field, set, add, static_cast<Real>(value));
   }
 
   // Protobuf writes 64-bit integers as strings, and allows any number without a fraction.

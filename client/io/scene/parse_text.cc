@@ -124,9 +124,8 @@ class FieldWalk {
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
       const double value = index < 0 ? reflection.GetDouble(message, &field)
                                      : reflection.GetRepeatedDouble(message, &field, index);
-      if (!std::isfinite(value))
-        Report(line, absl::StrCat(path, ": ", value, " is not a finite number"));
-    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+      if (std::isnan(value)) Report(line, absl::StrCat(path, ": ", value, " is not a number"));
+    } else if (field.type() == FieldDescriptor::TYPE_STRING) {
       const std::string value = index < 0 ? reflection.GetString(message, &field)
                                           : reflection.GetRepeatedString(message, &field, index);
       if (LineOfInvalidUtf8(value) > 0) Report(line, absl::StrCat(path, ": is not UTF-8 text"));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/counter_rng.h"
-#include "core/contact/surface_distance.h"
+#include "core/mesh/surface_distance.h"
 #include "tests/unit/core/contact/test_surfaces.h"
 
 namespace cleave {

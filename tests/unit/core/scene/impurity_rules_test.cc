@@ -38,6 +38,17 @@ SurfacePaint Painted() {
   return paint;
 }
 
+SurfacePaint Textured() {
+  SurfacePaint paint = Painted();
+  paint.shares.clear();
+  paint.texture.emplace();
+  paint.texture->width = 2;
+  paint.texture->height = 1;
+  paint.texture->values = {0, 255};
+  paint.texture->uvs = {{0, 0, 1, 0, 1, 1}};
+  return paint;
+}
+
 ImpurityLayer Layer(ImpuritySource source) {
   ImpurityLayer layer;
   layer.source = std::move(source);
@@ -58,7 +69,8 @@ TEST(ImpurityRules, AcceptEverySource) {
   for (const ImpuritySource& source :
        {ImpuritySource(NodeValues{std::vector<double>(27, 0.5)}), ImpuritySource(NoiseField{}),
         ImpuritySource(BandField{.width = 0.1}), ImpuritySource(PocketField{3, 0.1}),
-        ImpuritySource(Across()), ImpuritySource(Cross()), ImpuritySource(Painted())}) {
+        ImpuritySource(Across()), ImpuritySource(Cross()), ImpuritySource(Painted()),
+        ImpuritySource(Textured())}) {
     const Faults faults = Check(Layer(source));
     EXPECT_TRUE(faults.ok()) << source.index() << ": " << faults.ToStatus();
     EXPECT_EQ(faults.warning_count(), 0);
@@ -149,6 +161,39 @@ TEST(ImpurityRules, NameTheFieldOfEveryKindOfFault) {
                               p.vertices.clear();
                               p.triangles.clear();
                             })},
+      {".paint",  // a hundred times as large, all round the body
+       Spoilt<SurfacePaint>(Painted(),
+                            [](auto& p) {
+                              p.vertices = {{-50, -50, -50}, {150, -50, -50}, {-50, 150, 50}};
+                            })},
+      {".paint.shares", Spoilt<SurfacePaint>(Textured(),
+                                             [](auto& p) {
+                                               p.shares = {0, 1, 0};
+                                             })},
+      {".paint.texture.uvs",
+       Spoilt<SurfacePaint>(Textured(), [](auto& p) { p.texture->uvs = {}; })},
+      {".paint.texture.uvs[0]",
+       Spoilt<SurfacePaint>(Textured(),
+                            [](auto& p) { p.texture->uvs[0][5] = static_cast<float>(kNan); })},
+      {".paint.texture.uvs[0]",
+       Spoilt<SurfacePaint>(Textured(), [](auto& p) { p.texture->uvs[0][0] = -2e4f; })},
+      {".paint.texture.file",
+       Spoilt<SurfacePaint>(Textured(), [](auto& p) { p.texture->file = "worn.png"; })},
+      {".paint.texture.channel",
+       Spoilt<SurfacePaint>(Textured(),
+                            [](auto& p) { p.texture->channel = TextureChannel::kAlpha; })},
+      {".paint.texture.values",
+       Spoilt<SurfacePaint>(Textured(), [](auto& p) { p.texture->values.pop_back(); })},
+      {".paint.texture.width", Spoilt<SurfacePaint>(Textured(),
+                                                    [](auto& p) {
+                                                      p.texture->width = 0;
+                                                      p.texture->values.clear();
+                                                    })},
+      {".paint.texture", Spoilt<SurfacePaint>(Textured(),
+                                              [](auto& p) {
+                                                p.texture->width = 65'536;
+                                                p.texture->height = 65'536;
+                                              })},
       {".paint",  // misses
        Spoilt<SurfacePaint>(Painted(),
                             [](auto& p) {

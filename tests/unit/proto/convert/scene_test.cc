@@ -309,6 +309,16 @@ constexpr char kEveryField[] = R"pb(
         depth: 0.5
         file: "paint.ply"
         array: "red"
+        texture {
+          width: 2
+          height: 1
+          values: "\\000\\377"
+          uvs: [ 0, 0, 1, 0, 1, 1 ]
+          wrap: TEXTURE_WRAP_MIRROR
+          invert: true
+          file: "paint.png"
+          channel: TEXTURE_CHANNEL_BLUE
+        }
       }
       blend: BLEND_MAX
       falloff_shape: FALLOFF_SHAPE_LINEAR

@@ -23,6 +23,7 @@
 namespace cleave {
 namespace {
 
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
@@ -91,6 +92,62 @@ TEST(ParsePicture, RefusesWhatIsDamaged) {
     EXPECT_FALSE(ParsePicture(absl::string_view(jpeg).substr(0, size)).ok()) << size;
 }
 
+TEST(ParseChannel, GivesOneChannelAsItStandsThere) {
+  Image image(3, 2);
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      image.at(x, y)[0] = static_cast<uint8_t>(10 * x);
+      image.at(x, y)[1] = static_cast<uint8_t>(100 * y);
+      image.at(x, y)[2] = 200;
+    }
+  }
+  const std::string png = *EncodePng(image);
+  const auto values = [&png](TextureChannel channel) {
+    const auto picture = ParseChannel(png, channel);
+    EXPECT_TRUE(picture.ok()) << picture.status();
+    return picture->values;
+  };
+  EXPECT_THAT(values(TextureChannel::kRed), ElementsAre(0, 10, 20, 0, 10, 20));
+  EXPECT_THAT(values(TextureChannel::kGreen), ElementsAre(0, 0, 0, 100, 100, 100));
+  EXPECT_THAT(values(TextureChannel::kBlue), Each(200));
+  EXPECT_THAT(values(TextureChannel::kLuminance), ElementsAre(14, 17, 19, 86, 88, 90));
+  const std::string jpeg = Jpeg(Bar());
+  for (const std::string& bytes : {png, jpeg}) {
+    EXPECT_THAT(ParseChannel(bytes, TextureChannel::kAlpha).status().message(),
+                HasSubstr("has no alpha channel"));
+  }
+  const auto red = ParseChannel(jpeg, TextureChannel::kRed);
+  ASSERT_TRUE(red.ok()) << red.status();
+  EXPECT_EQ(red->values.size(), 800u);
+  EXPECT_LT(red->values[40 * 10 + 20], 30);
+  EXPECT_GT(red->values[0], 230);
+  EXPECT_FALSE(ParseChannel("GIF89a", TextureChannel::kRed).ok());
+}
+
+// A PNG of two pixels, 8-bit RGBA: (1, 2, 3, 0) and (9, 8, 7, 128).
+constexpr unsigned char kSeeThrough[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00, 0x00, 0xf4,
+    0x22, 0x7f, 0x8a, 0x00, 0x00, 0x00, 0x11, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60,
+    0x64, 0x62, 0x66, 0xe0, 0xe4, 0x60, 0x6f, 0x00, 0x00, 0x00, 0xfb, 0x00, 0x9f, 0xa7, 0x38,
+    0xb2, 0xce, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+TEST(ParseChannel, LeavesColoursAloneWhereTheyAreTransparent) {
+  const absl::string_view png(reinterpret_cast<const char*>(kSeeThrough), sizeof kSeeThrough);
+  EXPECT_THAT(ParseChannel(png, TextureChannel::kAlpha)->values, ElementsAre(0, 128));
+  EXPECT_THAT(ParseChannel(png, TextureChannel::kRed)->values, ElementsAre(1, 9));
+}
+
+TEST(Reduced, PicturesAreMeansOfWhatTheyWere) {
+  const PictureBytes picture = {4, 3, {0, 10, 20, 30, 0, 10, 20, 30, 40, 60, 80, 100}};
+  EXPECT_EQ(Reduced(picture, 4).values, picture.values);
+  const PictureBytes small = Reduced(picture, 2);
+  EXPECT_EQ(small.width, 2);
+  EXPECT_EQ(small.height, 2);
+  EXPECT_THAT(small.values, ElementsAre(5, 25, 28, 58));
+  EXPECT_THAT(Reduced(picture, 1).values, ElementsAre(33));
+}
+
 constexpr char kPly[] =
     "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\n"
     "property float y\nproperty double z\nproperty uchar red\nproperty float wear\n"
@@ -155,12 +212,18 @@ TEST(ParseVtuPointArray, ReadsOneArray) {
   EXPECT_FALSE(ParseVtuPointArray("<VTKFile/>", "wear").ok());
 }
 
+constexpr char kQuad[] =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 1\nvt 0 1\n"
+    "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
+
 class LayerFiles : public ::testing::Test {
  protected:
   LayerFiles() {
     Write("bar.png", *EncodePng(Bar()));
     Write("blank.png", *EncodePng(Image(8, 8)));
     Write("worn.ply", kPly);
+    Write("quad.obj", kQuad);
+    Write("bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   }
   void Write(const char* name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
@@ -202,6 +265,93 @@ TEST_F(LayerFiles, PutTheirContentInTheirPlace) {
   EXPECT_THAT(paint.shares(), ElementsAre(1, 0, 0.2, 0.4));
   EXPECT_EQ(paint.vertices_size(), 12);
   EXPECT_THAT(paint.triangles(), ElementsAre(0, 1, 2, 0, 2, 3));
+}
+
+TEST_F(LayerFiles, TexturesAreSentWithTheirCoordinates) {
+  const auto faults = Read(R"pb(
+    layers {
+      paint {
+        file: "quad.obj"
+        depth: 0.1
+        unit_scale: 0.01
+        texture {
+          file: "bar.png"
+          wrap: TEXTURE_WRAP_CLAMP
+          invert: true
+          channel: TEXTURE_CHANNEL_GREEN
+        }
+      }
+    })pb");
+  ASSERT_TRUE(faults.empty()) << faults[0].description;
+  const v1::SurfacePaint& paint = impurities_.layers(0).paint();
+  EXPECT_EQ(paint.file(), "");
+  EXPECT_EQ(paint.unit_scale(), 0.01);
+  EXPECT_EQ(paint.vertices_size(), 12);
+  EXPECT_EQ(paint.triangles_size(), 6);
+  const v1::SurfaceTexture& texture = paint.texture();
+  EXPECT_THAT(texture.uvs(), ElementsAre(0, 0, 2, 0, 2, 1, 0, 0, 2, 1, 0, 1));
+  EXPECT_EQ(texture.file(), "");
+  EXPECT_EQ(texture.channel(), v1::TEXTURE_CHANNEL_UNSPECIFIED);
+  EXPECT_TRUE(texture.invert());
+  EXPECT_EQ(texture.wrap(), v1::TEXTURE_WRAP_CLAMP);
+  ASSERT_EQ(texture.values().size(), 800u);
+  EXPECT_EQ(texture.width(), 40);
+  EXPECT_EQ(static_cast<uint8_t>(texture.values()[40 * 10 + 20]), 10);
+}
+
+TEST_F(LayerFiles, NameTheFileOfATextureThatCannotBeUsed) {
+  const auto faults = Read(R"pb(
+    layers {
+      paint {
+        file: "bare.obj"
+        texture { file: "bar.png" }
+      }
+    }
+    layers {
+      paint {
+        file: "quad.obj"
+        texture { file: "none.png" }
+      }
+    }
+    layers {
+      paint {
+        file: "quad.obj"
+        texture { file: "bar.png" channel: TEXTURE_CHANNEL_ALPHA }
+      }
+    }
+    layers {
+      paint {
+        file: "quad.obj"
+        texture { file: "worn.ply" }
+      }
+    }
+    layers { paint { file: "quad.obj" } }
+    layers {
+      paint {
+        file: "quad.obj"
+        texture { width: 1 file: "bar.png" }
+      }
+    }
+    layers {
+      paint {
+        file: "quad.obj"
+        array: "red"
+        texture { file: "bar.png" }
+      }
+    })pb");
+  const std::vector<std::array<const char*, 2>> expected = {
+      {"[0].paint.file", "bare.obj: has no texture coordinates"},
+      {"[1].paint.texture.file", "none.png"},
+      {"[2].paint.texture.file", "bar.png: has no alpha channel"},
+      {"[3].paint.texture.file", "neither a PNG nor a JPEG"},
+      {"[4].paint.file", "need a texture"},
+      {"[5].paint.texture.file", "stands beside"},
+      {"[6].paint.file", "array: has no meaning"}};
+  ASSERT_EQ(faults.size(), expected.size());
+  for (size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(faults[k].field, std::string("impurities.layers") + expected[k][0]);
+    EXPECT_THAT(faults[k].description, HasSubstr(expected[k][1]));
+  }
 }
 
 TEST_F(LayerFiles, NameTheLayerOfEveryFault) {

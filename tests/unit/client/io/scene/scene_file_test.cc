@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "tests/unit/client/io/scene/full_scene.h"
@@ -86,8 +87,47 @@ TEST(SceneFile, NumbersThatAreNoneAreRefused) {
   EXPECT_THAT(JsonError("{\"gravity\": [\"NaN\"]}"), HasSubstr("is not a number"));
   EXPECT_THAT(JsonError("{\"timing\": {\"frame_count\": 9223372036854775808}}"),
               HasSubstr("is outside"));
-  EXPECT_THAT(TextError("gravity: inf"), HasSubstr("not a finite number"));
+  EXPECT_THAT(JsonError("{\"gravity\": [\"inf\"]}"),
+              HasSubstr("\"inf\" is not a number; write \"Infinity\""));
   EXPECT_THAT(TextError("gravity: [0,\n nan]"), HasSubstr("gravity[1]"));
+}
+
+TEST(SceneFile, BytesAreBase64AndFloatsNumbers) {
+  const std::string json = R"({"impurities": {"layers": [{"paint": {"texture":
+    {"values": "AP8z", "uvs": [0.25, 1e-3, "Infinity"]}}}]}})";
+  const auto file = ParseScene(json, SceneFormat::kJson, "a.scene.json");
+  ASSERT_TRUE(file.ok()) << file.status();
+  v1::Scene expected;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(json, &expected).ok());
+  EXPECT_TRUE(MessageDifferencer::Equals(file->scene, expected));
+  EXPECT_EQ(file->scene.impurities().layers(0).paint().texture().values(),
+            std::string("\0\xff\x33", 3));
+  const std::string text = expected.DebugString();
+  EXPECT_TRUE(ParseScene(text, SceneFormat::kText, "a.textproto").ok()) << text;
+  EXPECT_THAT(JsonError(R"({"impurities": {"layers": [{"paint": {"texture": {"values": "?"}}}]}})"),
+              HasSubstr("\"?\" is not base64"));
+  EXPECT_THAT(JsonError(R"({"impurities": {"layers": [{"paint": {"texture": {"uvs": [1e39]}}}]}})"),
+              HasSubstr("too large"));
+}
+
+TEST(SceneFile, InfinityIsANumberOfBothFormats) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::string json = R"({"impurities": {"layers": [{"weakening": "Infinity"}]},
+    "weakenings": [{"factor": "Infinity"}], "gravity": ["-Infinity"]})";
+  const auto of_json = ParseScene(json, SceneFormat::kJson, "a.scene.json");
+  ASSERT_TRUE(of_json.ok()) << of_json.status();
+  EXPECT_EQ(of_json->scene.impurities().layers(0).weakening(), kInfinity);
+  EXPECT_EQ(of_json->scene.weakenings(0).factor(), kInfinity);
+  EXPECT_EQ(of_json->scene.gravity(0), -kInfinity);
+  const std::string text = of_json->scene.DebugString();
+  const auto of_text = ParseScene(text, SceneFormat::kText, "a.textproto");
+  ASSERT_TRUE(of_text.ok()) << of_text.status();
+  EXPECT_TRUE(MessageDifferencer::Equals(of_text->scene, of_json->scene)) << text;
+  std::string written;
+  ASSERT_TRUE(google::protobuf::util::MessageToJsonString(of_text->scene, &written).ok());
+  const auto again = ParseScene(written, SceneFormat::kJson, "a.scene.json");
+  ASSERT_TRUE(again.ok()) << again.status() << written;
+  EXPECT_TRUE(MessageDifferencer::Equals(again->scene, of_json->scene)) << written;
 }
 
 TEST(SceneFile, WrongSyntaxNamesTheLine) {

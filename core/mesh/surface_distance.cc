@@ -1,4 +1,4 @@
-#include "core/contact/surface_distance.h"
+#include "core/mesh/surface_distance.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -172,6 +172,15 @@ SurfacePoint SurfaceDistance::ClosestPoint(const Eigen::Vector3d& point) const {
   return {best.triangle->id,
           {1 - best.second - best.third, best.second, best.third},
           std::sqrt(best.squared)};
+}
+
+bool SurfaceReaches(const std::vector<Vec3>& vertices,
+                    const std::vector<std::array<int32_t, 3>>& triangles, double reach,
+                    const std::vector<Vec3>& points) {
+  const SurfaceDistance surface(vertices, triangles);
+  return std::any_of(points.begin(), points.end(), [&](const Vec3& point) {
+    return surface.ClosestPoint(Eigen::Vector3d(point[0], point[1], point[2])).distance <= reach;
+  });
 }
 
 }  // namespace cleave

@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CORE_CONTACT_SURFACE_DISTANCE_H_
-#define CLEAVE_CORE_CONTACT_SURFACE_DISTANCE_H_
+#ifndef CLEAVE_CORE_MESH_SURFACE_DISTANCE_H_
+#define CLEAVE_CORE_MESH_SURFACE_DISTANCE_H_
 
 #include <Eigen/Core>
 #include <array>
@@ -29,7 +29,7 @@ struct SurfacePoint {
 // pseudonormal", 2005. Immutable; any thread may ask.
 class SurfaceDistance {
  public:
-  // Preconditions: as CheckColliders holds them.
+  // Preconditions: at least one triangle, ids of vertices within range, finite coordinates.
   SurfaceDistance(const std::vector<Vec3>& vertices,
                   const std::vector<std::array<int32_t, 3>>& triangles);
 
@@ -74,6 +74,12 @@ class SurfaceDistance {
   std::vector<Node> nodes_;
 };
 
+// Whether any of the points is at most `reach` (m) from the surface. Preconditions as of
+// SurfaceDistance.
+bool SurfaceReaches(const std::vector<Vec3>& vertices,
+                    const std::vector<std::array<int32_t, 3>>& triangles, double reach,
+                    const std::vector<Vec3>& points);
+
 }  // namespace cleave
 
-#endif  // CLEAVE_CORE_CONTACT_SURFACE_DISTANCE_H_
+#endif  // CLEAVE_CORE_MESH_SURFACE_DISTANCE_H_
