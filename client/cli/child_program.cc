@@ -1,11 +1,13 @@
 #include "client/cli/child_program.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -19,12 +21,14 @@ namespace {
 std::string Reason() { return std::strerror(errno); }
 
 // Runs in the child between fork and exec: only calls that are safe there.
-[[noreturn]] void Become(char* const* words, int input, int output, int errors, pid_t parent) {
+[[noreturn]] void Become(char* const* words, int input, int output, int errors, int lifeline,
+                         pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(number, SIG_DFL);
   setpgid(0, 0);
+  fcntl(lifeline, F_SETFD, 0);  // open for as long as the program runs
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);  // the parent was gone before the line above
   dup2(input, STDIN_FILENO);
@@ -67,18 +71,32 @@ absl::StatusOr<std::unique_ptr<ChildProgram>> ChildProgram::Start(
   arguments.push_back(nullptr);
   // Whoever started this program may have it ignore children, and waiting would find none.
   signal(SIGCHLD, SIG_DFL);
+  std::array<int, 2> lifeline;
+  if (pipe2(lifeline.data(), O_CLOEXEC) != 0)
+    return absl::InternalError(absl::StrCat("a pipe for ", child->name_, ": ", Reason()));
+  child->lifeline_ = lifeline[0];
   const pid_t parent = getpid();
   child->pid_ = fork();
   if (child->pid_ == 0) {
     Become(arguments.data(), fileno(given.get()), fileno(child->output_.get()),
-           fileno(child->errors_.get()), parent);
+           fileno(child->errors_.get()), lifeline[1], parent);
   }
+  close(lifeline[1]);
   if (child->pid_ < 0)
     return absl::InternalError(absl::StrCat("starting ", child->name_, ": ", Reason()));
   return child;
 }
 
-ChildProgram::~ChildProgram() { Stop(); }
+ChildProgram::~ChildProgram() {
+  Stop();
+  if (lifeline_ >= 0) close(lifeline_);
+}
+
+void ChildProgram::AwaitAny(const std::vector<const ChildProgram*>& children, int milliseconds) {
+  std::vector<pollfd> waits;
+  for (const ChildProgram* child : children) waits.push_back({child->lifeline_, POLLIN, 0});
+  poll(waits.data(), waits.size(), milliseconds);  // whatever ends it, the caller looks again
+}
 
 bool ChildProgram::Ended() {
   if (pid_ >= 0 && waitpid(pid_, &wait_status_, WNOHANG) == pid_) pid_ = -1;

@@ -28,6 +28,8 @@ class ChildProgram {
 
   // Does not wait.
   bool Ended();
+  // Waits until one of them has ended, at most `milliseconds`.
+  static void AwaitAny(const std::vector<const ChildProgram*>& children, int milliseconds);
   // Ends it at once, with nothing more to be had from it.
   void Stop();
   // Waits for its end. What it printed on standard output; Internal where it did not end with 0,
@@ -44,6 +46,8 @@ class ChildProgram {
 
   std::string name_;
   File output_, errors_;
+  // A pipe whose other end the child alone holds: it closes with it.
+  int lifeline_ = -1;
   pid_t pid_ = -1;  // -1: has ended
   int wait_status_ = 0;
 };

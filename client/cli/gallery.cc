@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -39,6 +38,8 @@ struct Options {
   std::string runner;
   bool fresh = false;
 };
+
+constexpr int kLookAtInterrupt = 200;  // ms
 
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -181,6 +182,9 @@ class GalleryMaker {
         CLEAVE_ASSIGN_OR_RETURN(running.emplace_back(), Start(left.front()));
         left.pop_front();
       }
+      std::vector<const ChildProgram*> children;
+      for (const Running& each : running) children.push_back(each.child.get());
+      ChildProgram::AwaitAny(children, kLookAtInterrupt);
       for (size_t i = 0; i < running.size();) {
         if (!running[i].child->Ended()) {
           ++i;
@@ -189,7 +193,6 @@ class GalleryMaker {
         CLEAVE_RETURN_IF_ERROR(Collect(running[i]));
         running.erase(running.begin() + static_cast<ptrdiff_t>(i));
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return absl::OkStatus();  // what still runs is ended; it has nothing to lose but itself
   }

@@ -62,6 +62,14 @@ absl::Status Read(const Struct& object, const std::string& name, std::vector<std
   return absl::OkStatus();
 }
 
+// Several members, each after its name.
+template <typename Into, typename... More>
+absl::Status ReadAll(const Struct& object, const std::string& name, Into& into, More&&... more) {
+  CLEAVE_RETURN_IF_ERROR(Read(object, name, into));
+  if constexpr (sizeof...(more) > 0) return ReadAll(object, std::forward<More>(more)...);
+  return absl::OkStatus();
+}
+
 // Calls `read` with every object of a list.
 template <typename ReadObject>
 absl::Status ForEach(const Struct& object, const std::string& name, const ReadObject& read) {
@@ -74,10 +82,8 @@ absl::Status ForEach(const Struct& object, const std::string& name, const ReadOb
 }
 
 absl::Status ReadScene(const Struct& object, GalleryScene& scene) {
-  CLEAVE_RETURN_IF_ERROR(Read(object, "name", scene.name));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "title", scene.title));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "paper", scene.paper));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "pictured", scene.pictured));
+  CLEAVE_RETURN_IF_ERROR(ReadAll(object, "name", scene.name, "title", scene.title, "paper",
+                                 scene.paper, "pictured", scene.pictured));
   const auto add = [](const std::string& variant, std::vector<std::string>& variants) {
     if (std::find(variants.begin(), variants.end(), variant) == variants.end())
       variants.push_back(variant);
@@ -86,8 +92,7 @@ absl::Status ReadScene(const Struct& object, GalleryScene& scene) {
   const auto read = [&](const Struct& criterion) {
     bool control = false;
     std::vector<std::string> variants;
-    CLEAVE_RETURN_IF_ERROR(Read(criterion, "control", control));
-    CLEAVE_RETURN_IF_ERROR(Read(criterion, "variants", variants));
+    CLEAVE_RETURN_IF_ERROR(ReadAll(criterion, "control", control, "variants", variants));
     for (const std::string& variant : variants) {
       add(variant, scene.variants);
       if (!control) add(variant, shown);
@@ -103,8 +108,7 @@ absl::Status ReadScene(const Struct& object, GalleryScene& scene) {
 }
 
 absl::Status ReadCondition(const Struct& object, GalleryCondition& condition) {
-  CLEAVE_RETURN_IF_ERROR(Read(object, "text", condition.text));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "bound", condition.bound));
+  CLEAVE_RETURN_IF_ERROR(ReadAll(object, "text", condition.text, "bound", condition.bound));
   CLEAVE_ASSIGN_OR_RETURN(const Value* values, Member(object, "values", Value::kListValue));
   for (const Value& each : values->list_value().values()) {
     condition.values.push_back(each.kind_case() == Value::kNumberValue
@@ -115,14 +119,10 @@ absl::Status ReadCondition(const Struct& object, GalleryCondition& condition) {
 }
 
 absl::Status ReadFinding(const Struct& object, GalleryFinding& finding) {
-  CLEAVE_RETURN_IF_ERROR(Read(object, "text", finding.text));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "control", finding.control));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "asked", finding.asked));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "holds", finding.holds));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "met", finding.met));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "unmeasured", finding.unmeasured));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "trials", finding.trials));
-  CLEAVE_RETURN_IF_ERROR(Read(object, "needed", finding.needed));
+  CLEAVE_RETURN_IF_ERROR(ReadAll(object, "text", finding.text, "control", finding.control, "asked",
+                                 finding.asked, "holds", finding.holds, "met", finding.met,
+                                 "unmeasured", finding.unmeasured, "trials", finding.trials,
+                                 "needed", finding.needed));
   return ForEach(object, "conditions", [&](const Struct& condition) {
     return ReadCondition(condition, finding.conditions.emplace_back());
   });

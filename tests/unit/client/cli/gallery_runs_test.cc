@@ -92,6 +92,16 @@ TEST(ChildProgram, GivesWhatItPrintedOrWhyItFailed) {
   EXPECT_EQ((*child)->Output().status().message(), "sh ended with exit code 3");
 }
 
+TEST(ChildProgram, IsAwaitedTogetherWithOthers) {
+  auto lasting = ChildProgram::Start({"/bin/sh", "-c", "exec sleep 1000"});
+  auto short_lived = ChildProgram::Start({"/bin/sh", "-c", "echo done"});
+  ASSERT_TRUE(lasting.ok() && short_lived.ok());
+  while (!(*short_lived)->Ended())
+    ChildProgram::AwaitAny({lasting->get(), short_lived->get()}, 600'000);
+  EXPECT_FALSE((*lasting)->Ended());
+  EXPECT_EQ(*(*short_lived)->Output(), "done\n");
+}
+
 TEST(ChildProgram, EndsWhenItIsStopped) {
   auto child = ChildProgram::Start({"/bin/sh", "-c", "exec sleep 1000"});
   ASSERT_TRUE(child.ok()) << child.status();
