@@ -52,6 +52,30 @@ inline Int32x4 LoadInts(const int32_t* source) {
 }
 inline Double4 Min(Double4 a, Double4 b) { return a < b ? a : b; }
 
+// Each lane times `factor`, without overflow.
+inline Int64x4 WideProduct(Int32x4 v, int32_t factor) {
+#ifdef __AVX2__
+  return reinterpret_cast<Int64x4>(_mm256_mul_epi32(
+      _mm256_cvtepi32_epi64(reinterpret_cast<__m128i>(v)), _mm256_set1_epi32(factor)));
+#else
+  return __builtin_convertvector(v, Int64x4) * factor;
+#endif
+}
+// Lanes below 2^62 in magnitude by 2^kBits, rounded down.
+template <int kBits>
+Int64x4 ShiftRight(Int64x4 v) {
+  typedef uint64_t Uint64x4 __attribute__((vector_size(32)));
+  constexpr int64_t kOffset = int64_t{1} << 62;  // as no processor before AVX-512 shifts signs in
+  return reinterpret_cast<Int64x4>(reinterpret_cast<Uint64x4>(v + kOffset) >> kBits) -
+         (kOffset >> kBits);
+}
+// Of lanes below 2^51 in magnitude.
+inline Double4 ToDoubles(Int64x4 v) {
+  // The last bit of a double between 2^52 and 2^53 is worth 1.
+  constexpr int64_t kPatternOfOffset = 0x4338000000000000;
+  return reinterpret_cast<Double4>(v + kPatternOfOffset) - 0x1.8p52;
+}
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CORE_BASE_INT4_H_

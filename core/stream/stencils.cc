@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <cstring>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
 
+#include "core/base/lanes.h"
 #include "core/base/parallel.h"
 
 namespace cleave {
@@ -15,51 +16,6 @@ namespace {
 
 constexpr size_t kEnoughNear = 7;          // places over one edge that make a search stop
 constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther out
-
-// The nearest few of the places that it is offered, each once, by distance and then by place.
-class Nearest {
- public:
-  explicit Nearest(const Vec3& centre) : centre_(centre) {
-    squares_.fill(std::numeric_limits<double>::infinity());
-  }
-
-  void Offer(int32_t place, const Vec3& position) {
-    const double dx = position[0] - centre_[0];
-    const double dy = position[1] - centre_[1];
-    const double dz = position[2] - centre_[2];
-    const double square = dx * dx + dy * dy + dz * dz;
-    if (square <= squares_.back()) Insert(place, square);
-  }
-
-  void Clear() {
-    count_ = 0;
-    squares_.fill(std::numeric_limits<double>::infinity());
-  }
-  size_t count() const { return count_; }
-  int32_t operator[](size_t at) const { return places_[at]; }
-
- private:
-  void Insert(int32_t place, double square) {
-    size_t at = count_;
-    while (at > 0 &&
-           (square < squares_[at - 1] || (square == squares_[at - 1] && place < places_[at - 1]))) {
-      --at;
-    }
-    if (at == kStencilNodes || (at > 0 && places_[at - 1] == place)) return;
-    if (count_ < kStencilNodes) ++count_;
-    for (size_t to = count_ - 1; to > at; --to) {
-      squares_[to] = squares_[to - 1];
-      places_[to] = places_[to - 1];
-    }
-    squares_[at] = square;
-    places_[at] = place;
-  }
-
-  Vec3 centre_;
-  size_t count_ = 0;
-  std::array<double, kStencilNodes> squares_;  // ascending; infinite behind the last
-  std::array<int32_t, kStencilNodes> places_{};
-};
 
 // Places on their way to a Nearest: what is to be read of them is fetched meanwhile.
 class Candidates {
@@ -73,12 +29,12 @@ class Candidates {
     count_ += static_cast<size_t>(wanted);
     if (count_ == places_.size()) Flush([](int32_t) { return true; });
   }
-  // Offers now those that were added and of which `is_wanted(place)`.
+  // Offers those that were added and of which `is_wanted(place)`.
   template <typename IsWanted>
   void Flush(const IsWanted& is_wanted) {
     for (size_t at = 0; at < count_; ++at) {
       const int32_t place = places_[at];
-      if (is_wanted(place)) nearest_.Offer(place, rest_[static_cast<size_t>(place)]);
+      nearest_.Offer(place, rest_[static_cast<size_t>(place)], is_wanted(place));
     }
     count_ = 0;
   }
@@ -129,10 +85,12 @@ void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coar
   candidates.Flush(same_piece);
 }
 
-bool Contains(const Stencil& stencil, int32_t place) {
-  bool contains = false;
-  for (const int32_t of_stencil : stencil.places) contains |= of_stencil == place;
-  return contains;
+bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
+  Int32x8 of_stencil;
+  std::memcpy(&of_stencil, stencil.places.data(), sizeof(of_stencil));
+  Int32x8 found{};
+  for (const int32_t place : places) found |= of_stencil == place;
+  return Any(found);
 }
 
 }  // namespace
@@ -142,6 +100,7 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
     : rest_(std::move(rest_by_place)), graph_(order, edges) {
   stencils_.resize(rest_.size());
   reaches_.resize(rest_.size());
+  lost_edges_.assign(rest_.size(), 0);
   is_touched_.assign(rest_.size(), 0);
   pieces_.Find(order, graph_);
   cubes_.resize(static_cast<size_t>(order.groups()));
@@ -151,16 +110,16 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
       if (bits <= 21) cubes_[group][size] = CubeIndex(order.coarser[group], bits);
     }
   }
-  ParallelFor(graph_.places(), 256, [&](int64_t begin, int64_t end) {
-    for (int64_t place = begin; place < end; ++place) Rebuild(order, static_cast<int32_t>(place));
-  });
+  touched_.resize(rest_.size());
+  std::iota(touched_.begin(), touched_.end(), 0);
+  Rebuild(order, touched_);
 }
 
-void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
+// The places that a place is to be predicted from.
+void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest) {
   const auto index = static_cast<size_t>(place);
   const size_t group = order.GroupOf(place);
   const int32_t coarse_end = order.group_begins[group];
-  Nearest nearest(rest_[index]);
   Candidates candidates(rest_, nearest);
   const auto any = [](int32_t) { return true; };
   // Breaks only take places away, so that a search never ends nearer than it did before.
@@ -171,6 +130,7 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
       candidates.Add(other, other >= 0);
     }
     candidates.Flush(any);
+    nearest.Settle();
     if (nearest.count() < kEnoughNear) reach = Reach::kTwoEdges;
   }
   if (reach == Reach::kTwoEdges) {
@@ -178,8 +138,11 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
       if (between >= 0) graph_.Prefetch(between);
     }
     // Places that came by lately, since most come by several times.
-    std::array<int32_t, 64> recent;
+    std::array<int32_t, 128> recent;
     recent.fill(-1);
+    for (size_t k = 0; k < nearest.count(); ++k) {
+      recent[static_cast<size_t>(nearest[k]) % recent.size()] = nearest[k];
+    }
     for (const int32_t between : graph_.Neighbours(place)) {
       if (between < 0) continue;
       for (const int32_t other : graph_.Neighbours(between)) {
@@ -190,6 +153,7 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
       }
     }
     candidates.Flush(any);
+    nearest.Settle();
     if (nearest.count() < kEnough) reach = Reach::kSpace;
   }
   if (reach == Reach::kSpace) {
@@ -199,24 +163,53 @@ void Stencils::Rebuild(const NodeOrder& order, int32_t place) {
       if (bits > 21) break;
       SearchCubes(cubes_[group][size], order.coarser[group], order.codes[index], bits,
                   pieces_[place], pieces_, candidates);
+      nearest.Settle();
     }
   }
   const int32_t leader = pieces_.leaders()[static_cast<size_t>(pieces_[place])];
   if (nearest.count() == 0 && leader != place) {
-    nearest.Offer(leader, rest_[static_cast<size_t>(leader)]);
+    nearest.Offer(leader, rest_[static_cast<size_t>(leader)], true);
   }
+}
 
-  Stencil& stencil = stencils_[index];
-  stencil.places.fill(nearest.count() > 0 ? nearest[0] : -1);
-  stencil.weights.fill(0);
-  if (nearest.count() == 0) return;
-  std::array<Vec3, kStencilNodes> neighbours;
-  for (size_t k = 0; k < nearest.count(); ++k) {
-    stencil.places[k] = nearest[k];
-    neighbours[k] = rest_[static_cast<size_t>(nearest[k])];
-  }
-  stencil.weights =
-      StencilWeights(rest_[index], std::span<const Vec3>(neighbours.data(), nearest.count()));
+void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
+  constexpr int64_t kLanes = 4;
+  const auto rebuild_four = [&](std::span<const int32_t> some) {
+    StencilBatch batch;
+    for (size_t lane = 0; lane < some.size(); ++lane) {
+      const auto index = static_cast<size_t>(some[lane]);
+      const Vec3& centre = rest_[index];
+      Nearest nearest(centre);
+      Search(order, some[lane], nearest);
+      const size_t count = nearest.count();
+      batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
+      Stencil& stencil = stencils_[index];
+      stencil.places.fill(count > 0 ? nearest[0] : -1);
+      for (size_t k = 0; k < count; ++k) {
+        stencil.places[k] = nearest[k];
+        const Vec3& neighbour = rest_[static_cast<size_t>(nearest[k])];
+        for (size_t axis = 0; axis < 3; ++axis) {
+          batch.offsets[k][axis][static_cast<int>(lane)] = neighbour[axis] - centre[axis];
+        }
+      }
+    }
+    const std::array<Int32x4, kStencilNodes> weights = StencilWeights(batch);
+    for (size_t lane = 0; lane < some.size(); ++lane) {
+      Stencil& stencil = stencils_[static_cast<size_t>(some[lane])];
+      const bool leads = stencil.leads();
+      for (size_t k = 0; k < kStencilNodes; ++k) {
+        stencil.weights[k] = leads ? 0 : weights[k][static_cast<int>(lane)];
+      }
+    }
+  };
+  const auto count = static_cast<int64_t>(places.size());
+  ParallelFor((count + kLanes - 1) / kLanes, 16, [&](int64_t begin, int64_t end) {
+    for (int64_t four = begin; four < end; ++four) {
+      const int64_t first = four * kLanes;
+      rebuild_four(places.subspan(static_cast<size_t>(first),
+                                  static_cast<size_t>(std::min(kLanes, count - first))));
+    }
+  });
 }
 
 void Stencils::Touch(int32_t place) {
@@ -226,23 +219,33 @@ void Stencils::Touch(int32_t place) {
 }
 
 // Breaks only take places out of a search's reach. So a stencil stays as it is while all of its
-// places remain in reach, and only those that may have lost one are made anew.
-void Stencils::TouchAround(int32_t edge) {
-  const std::array<int32_t, 2> ends = graph_.Ends(edge);
-  for (size_t side = 0; side < 2; ++side) {
-    const int32_t near = ends[side];
-    const int32_t far = ends[1 - side];
+// places remain in reach, and only those that may have lost one are made anew: here those that were
+// found over an edge that `near` lost, or over one of its edges and then that.
+void Stencils::TouchAround(int32_t near) {
+  const auto touch = [&](std::span<const int32_t> lost) {
     const Reach reach = reaches_[static_cast<size_t>(near)];
     if (reach == Reach::kTwoEdges ||
-        (reach == Reach::kOneEdge && Contains(stencils_[static_cast<size_t>(near)], far))) {
+        (reach == Reach::kOneEdge && ContainsAny(stencils_[static_cast<size_t>(near)], lost))) {
       Touch(near);
     }
+    const int32_t first = *std::min_element(lost.begin(), lost.end());
     for (const int32_t other : graph_.Neighbours(near)) {
       // Stencils have earlier places only.
-      if (other < far || reaches_[static_cast<size_t>(other)] != Reach::kTwoEdges) continue;
-      if (Contains(stencils_[static_cast<size_t>(other)], far)) Touch(other);
+      if (other < first || reaches_[static_cast<size_t>(other)] != Reach::kTwoEdges) continue;
+      if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other);
     }
+  };
+  std::array<int32_t, 64> lost;
+  size_t count = 0;
+  for (const int32_t other : graph_.Neighbours(near)) {
+    // Edges between such places that were broken before make no difference.
+    if (other >= 0 || lost_edges_[static_cast<size_t>(~other)] == 0) continue;
+    lost[count++] = ~other;
+    if (count < lost.size()) continue;
+    touch(lost);
+    count = 0;
   }
+  if (count > 0) touch(std::span(lost.data(), count));
 }
 
 // Of stencils that were found in space, those with places that are now of another piece.
@@ -275,10 +278,19 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     std::vector<int32_t> fresh;
     std::set_difference(broken.begin(), broken.end(), broken_.begin(), broken_.end(),
                         std::back_inserter(fresh));
-    for (const int32_t edge : fresh) graph_.Break(edge);
-    ParallelFor(static_cast<int64_t>(fresh.size()), 256, [&](int64_t begin, int64_t end) {
-      for (int64_t at = begin; at < end; ++at) TouchAround(fresh[static_cast<size_t>(at)]);
+    std::vector<int32_t> ends;
+    for (const int32_t edge : fresh) {
+      graph_.Break(edge);
+      for (const int32_t end : graph_.Ends(edge)) {
+        uint8_t& lost_edges = lost_edges_[static_cast<size_t>(end)];
+        if (lost_edges == 0) ends.push_back(end);
+        lost_edges = 1;
+      }
+    }
+    ParallelFor(static_cast<int64_t>(ends.size()), 64, [&](int64_t begin, int64_t end) {
+      for (int64_t at = begin; at < end; ++at) TouchAround(ends[static_cast<size_t>(at)]);
     });
+    for (const int32_t end : ends) lost_edges_[static_cast<size_t>(end)] = 0;
     if (pieces_.Split(graph_, fresh)) TouchInSpace();
     for (size_t place = 0; place < is_touched_.size(); ++place) {
       if (is_touched_[place] != 0) touched_.push_back(static_cast<int32_t>(place));
@@ -286,11 +298,7 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     }
   }
   broken_.assign(broken.begin(), broken.end());
-  ParallelFor(static_cast<int64_t>(touched_.size()), 64, [&](int64_t begin, int64_t end) {
-    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      Rebuild(order, touched_[at]);
-    }
-  });
+  Rebuild(order, touched_);
   return touched_;
 }
 

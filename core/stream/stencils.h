@@ -9,14 +9,14 @@
 #include "core/base/vec3.h"
 #include "core/stream/cube_index.h"
 #include "core/stream/edge_graph.h"
+#include "core/stream/nearest.h"
 #include "core/stream/node_order.h"
 #include "core/stream/pieces.h"
+#include "core/stream/stencil_weights.h"
 
 namespace cleave {
 
-inline constexpr size_t kStencilNodes = 8;
-inline constexpr int32_t kStencilOne = 1 << 15;  // weights of a stencil add up to this
-inline constexpr size_t kCubeSizes = 3;          // sizes of cube that are searched around a place
+inline constexpr size_t kCubeSizes = 3;  // sizes of cube that are searched around a place
 
 // Earlier places from which a place is predicted, all of its own piece. Unused ones repeat the
 // first, with weight 0. The leader of a piece has none: all are -1.
@@ -26,11 +26,6 @@ struct alignas(64) Stencil {
 
   bool leads() const { return places[0] < 0; }
 };
-
-// Weights that reproduce affine maps of the rest positions as well as the neighbours allow;
-// FORMAT.md, "Weights". `neighbours` are 1 to kStencilNodes rest positions, nearest first.
-std::array<int32_t, kStencilNodes> StencilWeights(const Vec3& centre,
-                                                  std::span<const Vec3> neighbours);
 
 // The stencils of all places. They follow from the rest positions, the edges and the set of broken
 // edges alone, however that set came about. Loops run on the current TBB arena.
@@ -53,9 +48,10 @@ class Stencils {
   // Where a stencil's places were found. What later breaks can change it depends on that.
   enum class Reach : uint8_t { kOneEdge, kTwoEdges, kSpace };
 
-  void Rebuild(const NodeOrder& order, int32_t place);
+  void Search(const NodeOrder& order, int32_t place, Nearest& nearest);
+  void Rebuild(const NodeOrder& order, std::span<const int32_t> places);
   void Touch(int32_t place);
-  void TouchAround(int32_t edge);
+  void TouchAround(int32_t near);
   void TouchInSpace();
 
   std::vector<Vec3> rest_;  // m, by place
@@ -65,6 +61,7 @@ class Stencils {
   std::vector<Stencil> stencils_;
   std::vector<Reach> reaches_;
   std::vector<int32_t> broken_;
+  std::vector<uint8_t> lost_edges_;  // by place: 1 in a call that breaks some
   std::vector<uint8_t> is_touched_;
   std::vector<int32_t> touched_;
 };
