@@ -33,13 +33,15 @@ void Pieces::Find(const NodeOrder& order, const EdgeGraph& graph) {
   for (std::vector<int32_t>* by_rank : {&clumps_, &firsts_, &joined_, &numbers_}) {
     by_rank->assign(count, 0);
   }
+  joins_.assign(count, 0);
   blocks_.resize((count + kBlock - 1) / kBlock);
   labels_.assign(count, 0);
   leaders_.clear();
   const auto blocks = static_cast<int64_t>(blocks_.size());
   ParallelFor(blocks, kGrainBlocks, [&](int64_t begin, int64_t end) {
     for (int64_t block = begin; block < end; ++block) {
-      FindClumps(graph, static_cast<int32_t>(block));
+      FindJoins(graph, static_cast<int32_t>(block));
+      FindClumps(static_cast<int32_t>(block));
     }
   });
   ParallelFor(blocks, kGrainBlocks, [&](int64_t begin, int64_t end) {
@@ -51,59 +53,95 @@ void Pieces::Find(const NodeOrder& order, const EdgeGraph& graph) {
 }
 
 bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
-  std::vector<uint8_t> is_touched(blocks_.size(), 0);
+  constexpr uint8_t kInside = 1;
+  constexpr uint8_t kLink = 2;
+  std::vector<uint8_t> lost(blocks_.size(), 0);
   for (const int32_t edge : edges) {
-    for (const int32_t place : graph.Ends(edge)) {
-      is_touched[static_cast<size_t>(ranks_[static_cast<size_t>(place)] / kBlock)] = 1;
+    const auto [a, b] = graph.Ends(edge);
+    const int32_t rank_a = ranks_[static_cast<size_t>(a)];
+    const int32_t rank_b = ranks_[static_cast<size_t>(b)];
+    const auto block_a = static_cast<size_t>(rank_a / kBlock);
+    const auto block_b = static_cast<size_t>(rank_b / kBlock);
+    if (block_a == block_b) {
+      joins_[static_cast<size_t>(rank_a)] &= ~(uint64_t{1} << (rank_b % kBlock));
+      joins_[static_cast<size_t>(rank_b)] &= ~(uint64_t{1} << (rank_a % kBlock));
+      lost[block_a] |= kInside;
+    } else {
+      if (HasLink(block_a, rank_a, rank_b)) lost[block_a] |= kLink;
+      if (HasLink(block_b, rank_b, rank_a)) lost[block_b] |= kLink;
     }
   }
   std::vector<int32_t> touched;
   for (size_t block = 0; block < blocks_.size(); ++block) {
-    if (is_touched[block] != 0) touched.push_back(static_cast<int32_t>(block));
+    if (lost[block] != 0) touched.push_back(static_cast<int32_t>(block));
   }
   const auto count = static_cast<int64_t>(touched.size());
   ParallelFor(count, kGrainBlocks, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) FindClumps(graph, touched[static_cast<size_t>(at)]);
+    for (int64_t at = begin; at < end; ++at) {
+      const int32_t block = touched[static_cast<size_t>(at)];
+      uint8_t& of_block = lost[static_cast<size_t>(block)];
+      if ((of_block & kInside) != 0 && FindClumps(block)) of_block |= kLink;
+    }
   });
-  // A link stands for all edges between two clumps. Where a clump came apart its block's links are
-  // all found anew, so that no edge is without one.
+  // A link stands for all edges between two clumps. Where one broke or a clump came apart, the
+  // block's links are all found anew, so that no edge is without one.
   ParallelFor(count, kGrainBlocks, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) FindLinks(graph, touched[static_cast<size_t>(at)]);
+    for (int64_t at = begin; at < end; ++at) {
+      const int32_t block = touched[static_cast<size_t>(at)];
+      if ((lost[static_cast<size_t>(block)] & kLink) != 0) FindLinks(graph, block);
+    }
   });
   return Join();
 }
 
-void Pieces::FindClumps(const EdgeGraph& graph, int32_t block) {
+bool Pieces::HasLink(size_t block, int32_t from, int32_t to) const {
+  const std::vector<Link>& links = blocks_[block].links;  // ascending by `from`
+  auto link = std::lower_bound(links.begin(), links.end(), from,
+                               [](const Link& a, int32_t rank) { return a.from < rank; });
+  for (; link != links.end() && link->from == from; ++link) {
+    if (link->to == to) return true;
+  }
+  return false;
+}
+
+void Pieces::FindJoins(const EdgeGraph& graph, int32_t block) {
   const int32_t begin = block * kBlock;
-  const int32_t size = std::min(kBlock, graph.places() - begin);
-  std::array<uint64_t, kBlock> joins;  // by place of the block: a bit for each that an edge joins
-  for (int32_t at = 0; at < size; ++at) {
+  const int32_t end = std::min(begin + kBlock, graph.places());
+  for (int32_t rank = begin; rank < end; ++rank) {
     uint64_t bits = 0;
-    for (const int32_t other : graph.Neighbours(places_[static_cast<size_t>(begin + at)])) {
+    for (const int32_t other : graph.Neighbours(places_[static_cast<size_t>(rank)])) {
       // Without branches, which nobody could predict.
       const auto place = static_cast<size_t>(std::max(other, ~other));
       const auto offset = static_cast<uint32_t>(ranks_[place] - begin);
       bits |= uint64_t{offset < kBlock && other >= 0} << (offset % kBlock);
     }
-    joins[static_cast<size_t>(at)] = bits;
+    joins_[static_cast<size_t>(rank)] = bits;
   }
+}
+
+// True if a clump came apart.
+bool Pieces::FindClumps(int32_t block) {
+  const int32_t begin = block * kBlock;
+  const int32_t size = std::min(kBlock, static_cast<int32_t>(joins_.size()) - begin);
   std::vector<int32_t>& clumps = blocks_[static_cast<size_t>(block)].clumps;
+  const size_t before = clumps.size();
   clumps.clear();
   uint64_t left = size == kBlock ? ~uint64_t{0} : (uint64_t{1} << size) - 1;
   while (left != 0) {
     const int32_t clump = begin + std::countr_zero(left);
     clumps.push_back(clump);
-    int32_t first = graph.places();
+    int32_t first = static_cast<int32_t>(joins_.size());
     for (uint64_t open = left & -left; open != 0;) {
       const int at = std::countr_zero(open);
-      left &= ~(uint64_t{1} << at);
-      open = (open | joins[static_cast<size_t>(at)]) & left;
       const auto rank = static_cast<size_t>(begin + at);
+      left &= ~(uint64_t{1} << at);
+      open = (open | joins_[rank]) & left;
       clumps_[rank] = clump;
       first = std::min(first, places_[rank]);
     }
     firsts_[static_cast<size_t>(clump)] = first;
   }
+  return clumps.size() != before;
 }
 
 void Pieces::FindLinks(const EdgeGraph& graph, int32_t block) {

@@ -43,14 +43,17 @@ class Pieces {
     std::vector<Link> links;      // one at least between clumps that edges join
   };
 
-  void FindClumps(const EdgeGraph& graph, int32_t block);
+  void FindJoins(const EdgeGraph& graph, int32_t block);
+  bool FindClumps(int32_t block);
   void FindLinks(const EdgeGraph& graph, int32_t block);
+  bool HasLink(size_t block, int32_t from, int32_t to) const;
   bool Join();
   int32_t Root(int32_t clump);
 
   // A rank is a place's position along the curve.
   std::vector<int32_t> places_;  // by rank
   std::vector<int32_t> ranks_;   // by place
+  std::vector<uint64_t> joins_;  // by rank: a bit for each place of its block that an edge joins
   std::vector<int32_t> clumps_;  // by rank: the first rank of its clump
   std::vector<int32_t> firsts_;  // by the first rank of a clump: its first place
   std::vector<Block> blocks_;
