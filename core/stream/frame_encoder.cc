@@ -109,6 +109,7 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
                                                    " nodes"));
   }
   const std::vector<int32_t>& edges = frame.broken_edges;
+  if (goes_on && edges == state_.broken_edges) return absl::OkStatus();
   for (size_t at = 0; at < edges.size(); ++at) {
     if (edges[at] < 0 || static_cast<uint64_t>(edges[at]) >= header_.edge_count ||
         (at > 0 && edges[at] <= edges[at - 1])) {
@@ -330,7 +331,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   state_.time = frame.time;
   state_.tolerance = tolerance_;
   state_.fragments = frame.fragments;
-  state_.broken_edges = frame.broken_edges;
+  if (breaks || key) state_.broken_edges = frame.broken_edges;
   state_.previous.swap(state_.positions);
   state_.positions.swap(next_);
   state_.previous_exact.swap(state_.exact);

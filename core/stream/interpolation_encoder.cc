@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <numeric>
 #include <optional>
 
@@ -40,13 +41,22 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
   const Vec3 origin = header_.origin;
   const std::vector<int32_t>& nodes = predictor_.order().nodes;
   std::atomic<bool> all_fit{true};
+  const Double4 corner = {origin[0], origin[1], origin[2], 0};
+  const Double4 scale = {inverse_unit, inverse_unit, inverse_unit, 0};
+  const auto last_node = static_cast<int32_t>(positions.size()) - 1;
   ParallelFor(static_cast<int64_t>(nodes.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
     Int64x4 fits = ~Int64x4{};
     for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
-      const Vec3& x = positions[static_cast<size_t>(nodes[place])];
-      const Double4 target =
-          Double4{x[0] - origin[0], x[1] - origin[1], x[2] - origin[2], 0} * inverse_unit;
-      fits &= Abs(target) <= kMaxTarget;
+      const int32_t node = nodes[place];
+      const Vec3& x = positions[static_cast<size_t>(node)];
+      Double4 position;  // the fourth lane is of the next node, and scaled to zero
+      if (node == last_node) {
+        position = Double4{x[0], x[1], x[2], 0};
+      } else {
+        std::memcpy(&position, &x, sizeof(position));
+      }
+      const Double4 target = (position - corner) * scale;
+      fits &= (target <= kMaxTarget) & (target >= -kMaxTarget);
       targets_[place] = target;
     }
     const bool fit = !Any(~fits);

@@ -86,14 +86,12 @@ class InterpolationPredictor {
   template <typename Load>
   Double4 BlendOf(int32_t place, const Load& load) const {
     const Stencil& stencil = stencils_[place];
-    const Double4 near = Widen(LoadInts(stencil.weights.data()));
-    const Double4 far = Widen(LoadInts(stencil.weights.data() + 4));
-    const auto at = [&](size_t k) { return Widen(load(stencil.places[k])); };
-    const Double4 even = SplatLane<0>(near) * at(0) + SplatLane<2>(near) * at(2) +
-                         (SplatLane<0>(far) * at(4) + SplatLane<2>(far) * at(6));
-    const Double4 odd = SplatLane<1>(near) * at(1) + SplatLane<3>(near) * at(3) +
-                        (SplatLane<1>(far) * at(5) + SplatLane<3>(far) * at(7));
-    return Clamp(Floor((even + odd + kStencilOne / 2) * (1.0 / kStencilOne)));
+    const auto term = [&](size_t k) {
+      return WideProduct(load(stencil.places[k]), stencil.weights[k]);
+    };
+    const Int64x4 sum =
+        ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
+    return Clamp(ToDoubles(ShiftRight<kStencilBits>(sum + kStencilOne / 2)));
   }
   Int32x4 DetailIn(int32_t place, std::span<const int32_t> positions) const;
   void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);

@@ -57,13 +57,13 @@ std::string ResidualCoder::Encode(std::span<const int32_t> places,
                                   std::span<uint16_t> activities, SymbolCounts& counts,
                                   RansWriter& writer) const {
   writer.Clear();
-  uint16_t* symbols = writer.MoreSymbols(4 * places.size());
+  uint16_t* symbols = writer.MoreSymbols(4 * places.size() + 1);  // one that may not count
   bool all_zero = true;
   for (const int32_t place : places) {
     const Int32x4 r = residuals[static_cast<size_t>(place)];
     uint16_t& activity = activities[static_cast<size_t>(place)];
     const uint8_t c = ClassOf(activity);
-    const size_t mask = SignBits(r != 0) & 7;
+    const uint32_t mask = SignBits(r != 0) & 7;
     ++counts.masks[c][mask];
     *symbols++ = static_cast<uint16_t>(c * kOfClass + mask);
     if (mask == 0) {
@@ -71,14 +71,32 @@ std::string ResidualCoder::Encode(std::span<const int32_t> places,
       continue;
     }
     all_zero = false;
+    const Int32x4 sizes = r < 0 ? -r : r;
     int64_t magnitude = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (r[axis] == 0) continue;
-      const Token token = ToToken(r[axis]);
-      ++counts.tokens[c][token.symbol];
-      *symbols++ = static_cast<uint16_t>(c * kOfClass + kMasks + token.symbol);
-      writer.PutBits(token.bits, token.bit_count);
-      magnitude += std::abs(r[axis]);
+    if ((SignBits(sizes > static_cast<int32_t>(kDirectTokens)) & 7) == 0) {
+      // Nearly all: without a branch on what is zero, which nobody could predict.
+      uint32_t signs = 0;
+      uint32_t sign_count = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const uint32_t there = mask >> axis & 1;
+        const uint32_t token = static_cast<uint32_t>(sizes[axis]) - there;
+        counts.tokens[c][token] += there;
+        *symbols = static_cast<uint16_t>(c * kOfClass + kMasks + token);
+        symbols += there;
+        signs |= static_cast<uint32_t>(r[axis] < 0) << sign_count;
+        sign_count += there;
+      }
+      writer.PutBits(signs, sign_count);
+      magnitude = sizes[0] + sizes[1] + sizes[2];
+    } else {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (r[axis] == 0) continue;
+        const Token token = ToToken(r[axis]);
+        ++counts.tokens[c][token.symbol];
+        *symbols++ = static_cast<uint16_t>(c * kOfClass + kMasks + token.symbol);
+        writer.PutBits(token.bits, token.bit_count);
+        magnitude += sizes[axis];
+      }
     }
     activity = NextActivity(activity, magnitude);
   }
