@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/mesh_text.h"
 #include "client/io/export/vtu.h"
 
 namespace cleave {
@@ -65,19 +66,11 @@ std::vector<double> ShownImpurities(const v1::PreviewImpurityResponse& preview) 
 
 absl::StatusOr<std::string> PotencyVtu(const TetMesh& mesh,
                                        const v1::PreviewImpurityResponse& preview) {
-  VtuGrid grid;
-  grid.points = mesh.rest_positions;
-  for (const auto& tet : mesh.tets) {
-    grid.connectivity.insert(grid.connectivity.end(), tet.begin(), tet.end());
-    grid.offsets.push_back(static_cast<int64_t>(grid.connectivity.size()));
-  }
-  grid.types.assign(mesh.tets.size(), kVtuTetrahedron);
+  VtuGrid grid = TetGrid(mesh);
   const std::vector<double> potencies(preview.potencies().begin(), preview.potencies().end());
   const std::vector<double> shown = ShownImpurities(preview);
   grid.point_data = {MakeVtuArray<double>("potency", potencies),
                      MakeVtuArray<double>("impurity", shown)};
-  if (!mesh.tet_regions.empty())
-    grid.cell_data = {MakeVtuArray<int32_t>("region", mesh.tet_regions)};
   return EncodeVtu(grid, "impurities at rest");
 }
 

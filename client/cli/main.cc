@@ -49,6 +49,7 @@ int Main(int argc, char** argv) {
   AddValidate(app, program);
   AddPlan(app, program);
   AddProbe(app, program);
+  AddMesh(app, program);
   AddImpurity(app, program);
   AddInspect(app, program);
   AddExport(app, program);

@@ -26,6 +26,7 @@ void AddValidate(CLI::App& app, Program& program);
 void AddPlan(CLI::App& app, Program& program);
 void AddProbe(CLI::App& app, Program& program);
 void AddInspect(CLI::App& app, Program& program);
+void AddMesh(CLI::App& app, Program& program);
 void AddImpurity(CLI::App& app, Program& program);
 void AddInfo(CLI::App& app, Program& program);
 void AddExport(CLI::App& app, Program& program);
