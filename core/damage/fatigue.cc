@@ -29,7 +29,7 @@ FatigueDamage::FatigueDamage(int64_t edge_count, std::span<const FatigueLaw> law
       residual_strengths_(static_cast<size_t>(edge_count), 1.0) {}
 
 bool FatigueDamage::Follow(std::span<const double> stresses, Broadcast<double> tensile,
-                           Broadcast<double> kappa) {
+                           Broadcast<double> compressive, Broadcast<double> kappa) {
   std::atomic<bool> fell = false;
   ParallelFor(static_cast<int64_t>(edges_.size()), 2048, [&](int64_t begin, int64_t end) {
     for (int64_t e = begin; e < end; ++e) {
@@ -38,13 +38,16 @@ bool FatigueDamage::Follow(std::span<const double> stresses, Broadcast<double> t
       if (which < 0) continue;
       const FatigueLaw& law = laws_[static_cast<size_t>(which)];
       const double strength = tensile[e] * kappa[e];
+      const double crushing = compressive[e] * kappa[e];
       Edge& edge = edges_[index];
       const double before = edge.damage;
       edge.cycles.Follow(stresses[index], [&](int half_cycles, double low, double high) {
-        const double share = law.HalfCycle(low / strength, high / strength);
+        const double pulled = law.HalfCycle(low / strength, high / strength);
+        const double pressed = law.HalfCycle(-high / crushing, -low / crushing);
+        const double share = std::max(pulled, pressed);
         if (!(share > 0)) return;
         edge.damage += half_cycles * share;
-        edge.peak = std::max(edge.peak, high / strength);
+        edge.peak = std::max(edge.peak, pulled >= pressed ? high / strength : -low / crushing);
       });
       if (edge.damage == before) continue;
       const double left = law.ResidualStrength(edge.damage, edge.peak);

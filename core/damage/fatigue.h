@@ -21,7 +21,7 @@ struct FatigueLaw {
 
   // The share of an edge's life that half a cycle between two relative stresses takes: Basquin's
   // 1 / (2 N_f) = (sigma_ar / sigma_f')^(-1/b) with the amplitude sigma_ar = sqrt(sigma_max
-  // sigma_a) of Smith, Watson and Topper, so that cycles in compression do nothing.
+  // sigma_a) of Smith, Watson and Topper, so that cycles below 0 do nothing.
   double HalfCycle(double low, double high) const;
   // The share of strength left after a share `damage` of life, with cycles up to a relative stress
   // `peak`: 1 - (1 - peak) damage^nu, which leaves just the peak at the end of a life; 0 from then
@@ -30,6 +30,10 @@ struct FatigueLaw {
 };
 
 // Strength that edges lose to load cycles. Beyond the paper, which names fatigue as future work.
+// Stress relative to strength is what counts, in compression that to the compressive strength, by
+// the same law: in concrete both lie on one line. A half cycle takes the share of its worse end;
+// where compression never breaks, it takes nothing.
+//
 // Cycles of every edge's aggregated stress are counted as they come (load_cycles.h), their shares
 // of life add up (Palmgren and Miner), and strength falls with the sum; an edge breaks when its
 // stress reaches what is left, and when the sum reaches 1 at the latest. Strength lost does not
@@ -37,8 +41,8 @@ struct FatigueLaw {
 //
 // Sources: Basquin, The exponential law of endurance tests (1910); Miner, Cumulative damage in
 // fatigue (1945); Smith, Watson and Topper, A stress-strain function for the fatigue of metals
-// (1970); Broutman and Sahu (1972); Schaff and Davidson, Life prediction methodology for composite
-// structures (1997); ASTM E1049-85.
+// (1970); Broutman and Sahu (1972); Tepfers, Tensile fatigue strength of plain concrete (1979);
+// Schaff and Davidson, Life prediction methodology for composite structures (1997); ASTM E1049-85.
 //
 // Not thread-safe; loops run on the caller's TBB arena. The same bits for any number of threads.
 class FatigueDamage {
@@ -53,9 +57,11 @@ class FatigueDamage {
   // Miner's sum of an edge.
   double damage(int64_t edge) const { return edges_[static_cast<size_t>(edge)].damage; }
 
-  // Takes the stresses that edges have at the end of a step, Pa; their strengths without fatigue
-  // are tensile * kappa, Pa, > 0 where not infinite. Returns whether any strength fell.
-  bool Follow(std::span<const double> stresses, Broadcast<double> tensile, Broadcast<double> kappa);
+  // Takes the stresses that edges have at the end of a step, Pa, negative in compression; their
+  // strengths without fatigue are tensile * kappa and compressive * kappa, Pa, > 0 where not
+  // infinite. Returns whether any strength fell.
+  bool Follow(std::span<const double> stresses, Broadcast<double> tensile,
+              Broadcast<double> compressive, Broadcast<double> kappa);
 
   // Restore refuses (DataLoss) what cannot belong to this many edges, and then changes nothing.
   void Save(ByteWriter& out) const;
@@ -68,7 +74,7 @@ class FatigueDamage {
   struct Edge {
     LoadCycles cycles;
     double damage = 0;  // Miner's sum
-    double peak = 0;    // largest relative stress of a cycle that did damage
+    double peak = 0;    // largest relative stress, of either sign, of a cycle that did damage
   };
 
   const std::span<const FatigueLaw> laws_;

@@ -263,7 +263,9 @@ void EdgeFracture::EdgeStresses(std::span<const Vec3> positions, Stress effectiv
       const auto e = static_cast<int32_t>(edge);
       const EdgeLoad load = plastic_ != nullptr ? LoadOf<true>(e, positions, effective_stress)
                                                 : LoadOf<false>(e, positions, effective_stress);
-      stresses[static_cast<size_t>(edge)] = load.tension;
+      const bool pressed = load.compression / strengths_.compressive[edge] >
+                           std::max(load.tension, 0.0) / strengths_.tensile[edge];
+      stresses[static_cast<size_t>(edge)] = pressed ? -load.compression : load.tension;
     }
   });
 }

@@ -119,7 +119,8 @@ class EdgeFracture {
   void UpdateThresholds();
 
   // The aggregated stress of every edge, Pa, negative in compression; where the largest counts,
-  // that of tension. 0 for broken edges and those of strands. `stresses` has an edge each.
+  // that of tension or of compression, whichever is the larger share of its strength. 0 for broken
+  // edges and those of strands. `stresses` has an edge each.
   void EdgeStresses(std::span<const Vec3> positions,
                     std::span<const Eigen::Matrix3d> effective_stress, const PlasticTets* plastic,
                     std::span<double> stresses);

@@ -88,7 +88,8 @@ struct Plasticity {
 
 // How strength falls with load cycles (beyond the paper): Basquin's law sigma_a = sigma_f' (2
 // N_f)^b for the amplitude that breaks after N_f reversed cycles, shares of life added up after
-// Miner.
+// Miner. In compression the same shares of the compressive strength count as much; without one,
+// cycles in compression do nothing.
 struct Fatigue {
   double strength_coefficient = 0;        // sigma_f', Pa
   double strength_exponent = 0;           // b < 0; of metals about -0.05 to -0.12

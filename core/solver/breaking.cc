@@ -130,7 +130,7 @@ void Breaking::EndStep(const NodalVector& displacements) {
   fracture_.EdgeStresses(positions_, stresses_, plastic_tets_.empty() ? nullptr : &plastic,
                          edge_stresses_);
   const EdgeStrengths strengths = StrengthsOf(*model_.fracture, graph_, fatigue_);
-  if (fatigue_->Follow(edge_stresses_, strengths.tensile, strengths.kappa))
+  if (fatigue_->Follow(edge_stresses_, strengths.tensile, strengths.compressive, strengths.kappa))
     fracture_.UpdateThresholds();
 }
 

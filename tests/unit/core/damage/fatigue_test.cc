@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -75,7 +76,7 @@ class Fatigue : public ::testing::Test {
  protected:
   static Broadcast<double> Of(const double& value) { return Broadcast<double>::Uniform(value); }
   bool Follow(FatigueDamage& damage, double stress) const {
-    return damage.Follow(std::vector<double>{stress}, Of(strength_), Of(kappa_));
+    return damage.Follow(std::vector<double>{stress}, Of(strength_), Of(crushing_), Of(kappa_));
   }
   // Cycles between two stresses, Pa, until nothing is left; 0 where `most` do not do.
   int Life(FatigueDamage& damage, double low, double high, int most = 100000) const {
@@ -97,6 +98,7 @@ class Fatigue : public ::testing::Test {
   }
 
   double strength_ = kStrength, kappa_ = 1;
+  double crushing_ = std::numeric_limits<double>::infinity();
   std::vector<FatigueLaw> laws_;
 };
 
@@ -138,10 +140,36 @@ TEST_F(Fatigue, BelowTheEnduranceLimitLifeHasNoEnd) {
   EXPECT_GT(Life(damage, -0.7 * kStrength, 0.7 * kStrength), 0);
 }
 
-TEST_F(Fatigue, CyclesInCompressionDoNothing) {
+TEST_F(Fatigue, CyclesInCompressionDoNothingWhereItNeverBreaks) {
   FatigueDamage damage = Make({1.5, 10, 0, 1});
   EXPECT_EQ(Life(damage, -0.9 * kStrength, 0, 1000), 0);
   EXPECT_EQ(damage.residual_strengths()[0], 1);
+}
+
+TEST_F(Fatigue, CyclesInCompressionCountByTheCompressiveStrength) {
+  const FatigueLaw law{1.2, 8, 0, 1};
+  crushing_ = 4 * kStrength;
+  FatigueDamage damage = Make(law);
+  const double life = BasquinLife(law, 0.8 / std::sqrt(2.0));
+  // A half cycle counts once the next one follows: from 0 on, a cycle later than if pulled.
+  EXPECT_NEAR(Life(damage, -0.8 * crushing_, 0), life, 2.01);
+  // A weaker bond tires sooner: 0.8 of strength is more of what it has.
+  kappa_ = 0.9;
+  FatigueDamage weaker = Make(law);
+  EXPECT_NEAR(Life(weaker, -0.8 * crushing_, 0), life * std::pow(0.9, 8), 2.01);
+}
+
+TEST_F(Fatigue, ACycleTakesTheShareOfItsWorseEnd) {
+  const FatigueLaw law{1.5, 10, 0, 1};
+  const auto life = [&](double low, double high) {
+    FatigueDamage damage = Make(law);
+    return Life(damage, low, high);
+  };
+  const int pulled = life(-0.3 * kStrength, 0.8 * kStrength);
+  crushing_ = kStrength;
+  EXPECT_EQ(life(-0.3 * kStrength, 0.8 * kStrength), pulled);
+  // Each half cycle pairs an end with the other: pressed as hard as pulled, it lasts as long.
+  EXPECT_NEAR(life(-0.8 * kStrength, 0.3 * kStrength), pulled, 1);
 }
 
 TEST_F(Fatigue, StrengthFallsToTheLoadsPeakAndNeverRises) {
@@ -205,7 +233,7 @@ TEST_F(Fatigue, OnlyEdgesWithALawTire) {
   FatigueDamage damage(3, laws_, of_edge);
   for (int cycle = 0; cycle < 100; ++cycle) {
     for (const double stress : {0.7 * kStrength, -0.7 * kStrength})
-      damage.Follow(std::vector<double>(3, stress), Of(strength_), Of(kappa_));
+      damage.Follow(std::vector<double>(3, stress), Of(strength_), Of(crushing_), Of(kappa_));
   }
   EXPECT_EQ(damage.damage(0), 0);
   EXPECT_GT(damage.damage(1), 0);

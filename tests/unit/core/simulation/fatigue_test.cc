@@ -78,6 +78,23 @@ TEST(FatiguedBar, LastsWithoutFatigueAndBelowTheEnduranceLimit) {
   EXPECT_EQ(BreakingCycle(scene, peak), 0);
 }
 
+// Life goes by the share of the compressive strength, as it does by that of the tensile one.
+TEST(FatiguedBar, PressedAgainAndAgainBreaksOnlyWhereItHasACompressiveStrength) {
+  for (const auto aggregation : {StressAggregation::kMean, StressAggregation::kMax}) {
+    Scene scene = CycledBar(2);
+    scene.fracture.aggregation = aggregation;
+    for (Keyframe& keyframe : scene.motions.back().keyframes) keyframe.translation[0] *= -0.95;
+    double peak = 0;
+    EXPECT_EQ(BreakingCycle(scene, peak), 0);
+    scene.materials[0].compressive_strength = kStrength;
+    const int pressed = BreakingCycle(scene, peak);
+    EXPECT_GT(pressed, 10);
+    scene.materials[0].compressive_strength = 1.25 * kStrength;
+    const int longer = BreakingCycle(scene, peak);
+    EXPECT_NEAR(static_cast<double>(longer) / pressed, std::pow(1.25, 1 / 0.2), 0.3);
+  }
+}
+
 TEST(FatiguedBar, PulledOnceItHasTheSameStrength) {
   uint64_t frames[2] = {0, 0};
   for (const bool tires : {false, true}) {
