@@ -185,7 +185,17 @@ class ElasticTerm : public Shape<T>::Term {
     if (place < 0) return 0;
     const int64_t b = place / TetBatches<T>::kLanes;
     const Matrix3<T> g = DeformationOf(b, displacements).g;
-    const T energy = tets_.batches[static_cast<size_t>(b)].volume * EnergyDensity(b, g);
+    T density = EnergyDensity(b, g);
+    if constexpr (Shape<T>::kFlows) {
+      // What the passes count: of what flows the incremental potential instead of the law's energy.
+      const auto kinematics = Law::KinematicsOf(g);
+      const T elastic = Law::Energy(g, kinematics, lame(b));
+      T relaxed = elastic;
+      Matrix3<T> stress = Law::Stress(g, kinematics, lame(b));
+      shape_.template Relax<Law>(b, g, stress_unit_, relaxed, stress);
+      density += relaxed - elastic;
+    }
+    const T energy = tets_.batches[static_cast<size_t>(b)].volume * density;
     return double{energy[place % TetBatches<T>::kLanes]} * stress_unit_ *
            std::pow(tets_.length_unit, 3);
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/simulation/simulation.h"
+#include "tests/unit/core/simulation/ductile_bar.h"
 #include "tests/unit/core/simulation/fracture_run.h"
 
 namespace cleave {
@@ -101,6 +102,59 @@ TEST(FrameEvents, TellOfEveryEdgeOnceWithItsShareOfTheEnergy) {
   }
   EXPECT_EQ(std::vector<int32_t>(broken.begin(), broken.end()), simulation->broken_edges());
   EXPECT_GT(splits, 0u);
+}
+
+// What edges took is what the budget says that breaking took, whichever way tets are weakened; and
+// no break adds energy.
+void ExpectEnergiesAddUp(const Scene& scene, const TetMesh& mesh, int frames) {
+  auto simulation = *Simulation::Create(scene, mesh, {});
+  double taken = 0, largest = 0;
+  size_t frames_with_breaks = 0;
+  for (int frame = 0; frame < frames; ++frame) {
+    const FrameReport report = Advanced(*simulation);
+    const double lost = report.fracture_energy - taken;
+    largest = std::max({largest, report.elastic_energy, lost});
+    double energy = 0;
+    for (const EdgeBreakEvent& event : report.events.edge_breaks) {
+      EXPECT_GE(event.place.energy, -1e-12 * largest) << scene.name << ", edge " << event.edge;
+      energy += event.place.energy;
+    }
+    EXPECT_NEAR(energy, lost, 1e-9 * largest) << scene.name << ", frame " << frame;
+    taken = report.fracture_energy;
+    frames_with_breaks += report.events.edge_breaks.empty() ? 0 : 1;
+  }
+  EXPECT_GT(frames_with_breaks, 2u) << scene.name;
+  EXPECT_GT(taken, 1e-3 * largest) << scene.name;
+}
+
+TEST(FrameEvents, EnergiesOfEdgesAddUpToThatOfFractureInFibres) {
+  Scene scene = BreakingScene();
+  scene.name = "fibres";
+  scene.materials[0].fibres.push_back({1e6, ConstantDirection{{0.8, 0.6, 0}}, 2});
+  scene.materials[0].fibres.push_back({3e5, ConstantDirection{{0, 0, 1}}});
+  ExpectEnergiesAddUp(scene, BreakingMesh(), kFrames);
+}
+
+TEST(FrameEvents, EnergiesOfEdgesAddUpToThatOfFractureInStrandsThatFormAndTear) {
+  for (const auto reformulation : {Reformulation::kUniform, Reformulation::kEdgeProjected}) {
+    Scene scene = BreakingScene();
+    scene.name = "strands";
+    scene.fracture.reformulation = reformulation;
+    scene.materials[0].strands = Strands{0.2, 1.6};
+    ExpectEnergiesAddUp(scene, BreakingMesh(), 24);
+  }
+}
+
+TEST(FrameEvents, EnergiesOfEdgesAddUpToThatOfFractureInDuctileBodies) {
+  Scene scene = TwistedBar();
+  scene.name = "ductile";
+  scene.materials[0].tensile_strength = 1e6;
+  scene.materials[0].plasticity->failure_strain = 0.25;
+  ExpectEnergiesAddUp(scene, TwistedBarMesh(), kFrames);
+  // Fibres that flow with it.
+  scene.name = "ductile with fibres";
+  scene.materials[0].fibres.push_back({3e5, ConstantDirection{{1, 0, 0}}});
+  ExpectEnergiesAddUp(scene, TwistedBarMesh(), kFrames);
 }
 
 TEST(FrameEvents, AreTheSameFromARestoredStateAndOnTwoThreads) {
