@@ -2,12 +2,18 @@
 #define CLEAVE_CORE_SURFACE_FACES_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/mesh/tet_mesh.h"
 
 namespace cleave {
+
+// For edge k of a tet (kTetEdges), the other two vertices, so that (ends of k, these) is an even
+// permutation: seen along the edge, they turn clockwise.
+inline constexpr std::array<std::array<size_t, 2>, 6> kAcrossEdge = {
+    {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}}};
 
 // A side of a tet: face k of kTetFaces.
 struct TetFace {

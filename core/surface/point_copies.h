@@ -42,6 +42,12 @@ class PointCopies {
     const VertexGroups& groups = kVertexGroups[surface_.tet_masks[tet]];
     return groups.group[a] != groups.group[b];
   }
+  // The same for two of its nodes.
+  bool PartsNodes(size_t tet, int32_t a, int32_t b) const {
+    return Parts(tet, VertexOf(tet, a), VertexOf(tet, b));
+  }
+  // Whether all tets round an edge part its ends.
+  bool Splits(int32_t edge) const { return edge_splits_[static_cast<size_t>(edge)] != 0; }
   FaceState StateOf(size_t tet, size_t face) const;
 
   // To be called for every edge that a tet has come to part, before points are asked for.
@@ -77,9 +83,6 @@ class PointCopies {
   }
   int32_t Put(SurfaceId id, SurfacePoint point);
   size_t VertexOf(size_t tet, int32_t node) const;
-  bool PartsNodes(size_t tet, int32_t a, int32_t b) const {
-    return Parts(tet, VertexOf(tet, a), VertexOf(tet, b));
-  }
   void Apply(size_t tet, FaceState& state) const;
   std::array<double, 4> FaceWeights(const FaceState& state) const;
   std::array<double, 4> TetWeights(size_t tet) const;

@@ -22,6 +22,8 @@ Vector3d At(std::span<const Vec3> positions, int32_t node) {
   return Vector3d(positions[static_cast<size_t>(node)].data());
 }
 
+bool IsInterpolated(const SurfacePoint& point) { return point.owned_by_all() && !point.off_nodes; }
+
 Matrix3d EdgeMatrix(const std::array<int32_t, 4>& nodes, std::span<const Vec3> positions) {
   const Vector3d origin = At(positions, nodes[0]);
   Matrix3d edges;
@@ -73,7 +75,7 @@ PointMotion::PointMotion(const TetMesh& mesh, const Incidence& incidence)
 void PointMotion::UpdateGradients(const SurfaceTopology& surface, std::span<const Vec3> positions) {
   owner_nodes_.clear();
   for (const SurfacePoint& point : surface.points) {
-    if (point.owned_by_all()) continue;
+    if (IsInterpolated(point)) continue;
     for (size_t i = 0; i < point.node_count; ++i) {
       if ((point.owners >> i & 1) != 0) owner_nodes_.push_back(point.nodes[i]);
     }
@@ -103,7 +105,7 @@ void PointMotion::Move(const SurfaceTopology& surface, std::span<const Vec3> pos
       const SurfacePoint& point = surface.points[static_cast<size_t>(p)];
       Eigen::Map<Vector3d> moved(points[static_cast<size_t>(p)].data());
       moved.setZero();
-      if (point.owned_by_all()) {
+      if (IsInterpolated(point)) {
         for (size_t i = 0; i < point.node_count; ++i)
           moved += point.weights[i] * At(positions, point.nodes[i]);
         continue;

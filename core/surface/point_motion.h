@@ -15,12 +15,13 @@ namespace cleave {
 
 // Carries the points of visible surfaces along with the nodes, frame after frame.
 //
-// A point that all of its nodes own moves as their weighted mean. Another copy moves with the nodes
-// on its side: the mean over them of x_v + F_v (X_p - X_v), F_v the volume-weighted mean
-// deformation gradient of the live tets at v, its singular values held within [0.2, 5] because a
-// crack's neighbours may be badly distorted. (The split tet's own gradient tells how far the pieces
-// are apart, not how they are deformed.) A node that has lost its last live tet keeps the last F_v
-// that it had, or the one of the previous call's positions. Source: method note, section 8.
+// A point that all of its nodes own moves as their weighted mean. Another copy, and a point off its
+// nodes, moves with the nodes on its side: the mean over them of x_v + F_v (X_p - X_v), F_v the
+// volume-weighted mean deformation gradient of the live tets at v, its singular values held within
+// [0.2, 5] because a crack's neighbours may be badly distorted. (The split tet's own gradient tells
+// how far the pieces are apart, not how they are deformed.) A node that has lost its last live tet
+// keeps the last F_v that it had, or the one of the previous call's positions. Source: method note,
+// section 8.
 //
 // Not thread-safe; loops run on the caller's TBB arena.
 class PointMotion {

@@ -15,7 +15,23 @@ using SurfaceId = uint64_t;
 
 namespace surface_id {
 
-enum Kind : uint64_t { kNode, kEdge, kFace, kTet, kPinch, kOuter, kCrack };
+enum Kind : uint64_t {
+  kNode,
+  kEdge,
+  kFace,
+  kTet,
+  kPinch,
+  kOuter,
+  kCrack,
+  // Of a render mesh as it is divided.
+  kRenderPoint,
+  kRenderEdge,
+  kRenderMiddle,
+  kLoosePair,
+  kLooseTriple,
+  kRenderOuter,
+  kRenderCrack,
+};
 
 constexpr SurfaceId Make(Kind kind, uint64_t part, uint64_t low) {
   return kind << 56 | part << 8 | low;
@@ -38,6 +54,19 @@ constexpr SurfaceId OfPinch(size_t face, size_t i, size_t side) {
   return Make(kPinch, face, 2 * i + side);
 }
 
+// Points of a render mesh: a given one; where an edge is cut, 0 on the side of its first end; in a
+// triangle between three nodes, on the side of the first of its corners `first`. Cracks inside have
+// the points of tets, faces and edges; the loose ones are where there is no edge or face.
+constexpr SurfaceId OfRenderPoint(size_t point) { return Make(kRenderPoint, point, 0); }
+constexpr SurfaceId OfRenderEdge(size_t edge, size_t side) { return Make(kRenderEdge, edge, side); }
+constexpr SurfaceId OfRenderMiddle(size_t triangle, size_t first) {
+  return Make(kRenderMiddle, triangle, first);
+}
+constexpr SurfaceId OfLoosePair(size_t pair, size_t side) { return Make(kLoosePair, pair, side); }
+constexpr SurfaceId OfLooseTriple(size_t triple, size_t first) {
+  return Make(kLooseTriple, triple, first);
+}
+
 // Triangles. Of a boundary face, 4 * tet + face: `corners` has bit i for corner i, 3 + i for the
 // middle between corner i and the next, 6 for the face point.
 constexpr SurfaceId OfOuter(size_t face, unsigned corners) { return Make(kOuter, face, corners); }
@@ -45,6 +74,15 @@ constexpr SurfaceId OfOuter(size_t face, unsigned corners) { return Make(kOuter,
 // faces that meet there, whole (0), or parted by a pinch point into outer (1) and inner (2).
 constexpr SurfaceId OfCrack(size_t tet, size_t k, size_t side, size_t half, size_t share) {
   return Make(kCrack, tet, k << 4 | side << 3 | half << 2 | share);
+}
+// Of a render mesh's triangle: `corners` as above, with cuts for middles. And the crack inwards
+// from its edge k (3: from the cut across it) on the side of corner `side`, in the half at the cut
+// (0) or further in (1).
+constexpr SurfaceId OfRenderOuter(size_t triangle, unsigned corners) {
+  return Make(kRenderOuter, triangle, corners);
+}
+constexpr SurfaceId OfRenderCrack(size_t triangle, size_t k, size_t side, size_t half) {
+  return Make(kRenderCrack, triangle, k << 3 | side << 1 | half);
 }
 
 }  // namespace surface_id

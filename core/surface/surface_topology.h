@@ -13,11 +13,14 @@ namespace cleave {
 
 // A point of the visible surface: where it lies in the rest shape, and which nodes carry it.
 struct SurfacePoint {
-  Vec3 rest{};                                   // m: the weighted mean of its nodes
+  Vec3 rest{};                                   // m: the weighted mean of its nodes, unless it is
+                                                 // `off_nodes`
   std::array<int32_t, 4> nodes{-1, -1, -1, -1};  // the first `node_count` count
   std::array<double, 4> weights{};               // of the nodes; they sum to 1
   uint8_t node_count = 0;
   uint8_t owners = 0;  // bit i: nodes[i] is on this copy's side of the cracks through the point
+
+  bool off_nodes = false;  // only near its nodes: weights are for values, not for places
 
   bool owned_by_all() const { return owners == (1u << node_count) - 1; }
 };

@@ -4,13 +4,10 @@
 #include <functional>
 #include <utility>
 
+#include "core/surface/parted_edges.h"
+
 namespace cleave {
 namespace {
-
-// For edge k of a tet, the other two vertices, so that (ends of k, these) is an even permutation:
-// seen along the edge, they turn clockwise.
-constexpr std::array<std::array<size_t, 2>, 6> kAcrossEdge = {
-    {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}}};
 
 // The edge between two vertices of a tet.
 constexpr std::array<std::array<size_t, 4>, 4> kEdgeBetween = {
@@ -19,12 +16,6 @@ constexpr std::array<std::array<size_t, 4>, 4> kEdgeBetween = {
 // Corners of a boundary face, as in surface_id::OfOuter.
 constexpr size_t kMiddle = 3;
 constexpr size_t kFacePoint = 6;
-
-bool PartsEdge(EdgeMask mask, size_t k) {
-  const VertexGroups& groups = kVertexGroups[mask];
-  return groups.group[static_cast<size_t>(kTetEdges[k][0])] !=
-         groups.group[static_cast<size_t>(kTetEdges[k][1])];
-}
 
 }  // namespace
 
@@ -61,7 +52,7 @@ int32_t& VisibleSurface::HeadOf(size_t triangle) {
 }
 
 int64_t VisibleSurface::Break(std::span<const int32_t> edges) {
-  FindParted(edges);
+  BreakInTets(incidence_, edges, out_.tet_masks, parted_);
   if (parted_.empty()) return 0;
   for (const int32_t edge : parted_) copies_.UpdateEdge(edge);
   FindTouched();
@@ -86,27 +77,6 @@ int64_t VisibleSurface::Break(std::span<const int32_t> edges) {
     if (pinch_stays_[i] == 0) RemovePoint(pinches_[i]);
   }
   return made;
-}
-
-void VisibleSurface::FindParted(std::span<const int32_t> edges) {
-  parted_.clear();
-  for (const int32_t edge : edges) {
-    for (const int32_t around : incidence_.edge_tets[edge]) {
-      const auto tet = static_cast<size_t>(around);
-      EdgeMask& mask = out_.tet_masks[tet];
-      const EdgeMask before = mask;
-      for (size_t k = 0; k < 6; ++k) {
-        if (incidence_.tet_edges[tet][k] == edge) mask |= static_cast<EdgeMask>(1u << k);
-      }
-      if (kVertexGroups[mask].count == kVertexGroups[before].count) continue;
-      for (size_t k = 0; k < 6; ++k) {
-        if (PartsEdge(mask, k) && !PartsEdge(before, k))
-          parted_.push_back(incidence_.tet_edges[tet][k]);
-      }
-    }
-  }
-  std::sort(parted_.begin(), parted_.end());
-  parted_.erase(std::unique(parted_.begin(), parted_.end()), parted_.end());
 }
 
 void VisibleSurface::FindTouched() {

@@ -66,8 +66,6 @@ class VisibleSurface {
   size_t BoundaryIndex(size_t face) const;
   int32_t& HeadOf(size_t triangle);
 
-  // The edges of tets whose groups of vertices have changed that they have come to part.
-  void FindParted(std::span<const int32_t> edges);
   // Fills `touched_` with the tets round those.
   void FindTouched();
   // What is made between these two takes the triangles of `head`'s list, and then new ones.

@@ -54,8 +54,6 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
       incidence_(BuildIncidence(mesh)),
       faces_(BuildFaces(mesh)),
       moved_(mesh_, incidence_) {
-  if (options_.render_mesh != nullptr)
-    embedded_.emplace(mesh_, incidence_, faces_, *options_.render_mesh);
   if (!options_.strains) return;
   rest_inverses_.resize(mesh.tets.size());
   rest_volumes_.resize(mesh.tets.size());
@@ -104,16 +102,23 @@ void SurfaceSequence::Follow(const Frame& frame) {
                                broken_edges_.begin(), broken_edges_.end());
   if (!goes_on) {
     broken_edges_.clear();
-    surface_.emplace(mesh_, incidence_, faces_, SurfaceOptions{});
     pieces_.emplace(mesh_, incidence_);
-    is_cut_stale_ = true;
+    if (options_.render_mesh != nullptr) {
+      embedded_.emplace(mesh_, incidence_, faces_, *options_.render_mesh);
+    } else {
+      surface_.emplace(mesh_, incidence_, faces_, SurfaceOptions{});
+    }
   }
   std::vector<int32_t> edges;
   std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(), broken_edges_.begin(),
                       broken_edges_.end(), std::back_inserter(edges));
   broken_edges_ = frame.broken_edges;
-  surface_->Break(edges);
-  if (!pieces_->Break(edges).empty()) is_cut_stale_ = true;
+  pieces_->Break(edges);
+  if (embedded_) {
+    embedded_->Break(edges, *pieces_);
+  } else {
+    surface_->Break(edges);
+  }
   is_stale_ = true;
 }
 
@@ -123,11 +128,6 @@ void SurfaceSequence::TakeApart(const Frame& frame) {
   node_pieces_.resize(mesh_.rest_positions.size());
   for (size_t node = 0; node < node_pieces_.size(); ++node)
     node_pieces_[node] = pieces_->piece_of(static_cast<int32_t>(node));
-  if (embedded_) {
-    if (is_cut_stale_) embedded_->Cut(*pieces_);
-    is_cut_stale_ = false;
-    embedded_->SetMasks(surface_->topology().tet_masks);
-  }
   Show();
   if (options_.sources) FindSources();
   if (options_.damages) FindDamages();

@@ -93,11 +93,10 @@ class SurfaceSequence {
 
   bool started_ = false;
   bool changed_ = false;
-  bool is_stale_ = false;      // what is shown is of fewer broken edges
-  bool is_cut_stale_ = false;  // so is how the render mesh is cut
+  bool is_stale_ = false;  // what is shown is of fewer broken edges
   double last_time_ = -std::numeric_limits<double>::infinity();  // s
   std::vector<int32_t> broken_edges_;
-  std::optional<VisibleSurface> surface_;
+  std::optional<VisibleSurface> surface_;  // or, where there is a render mesh,
   std::optional<EmbeddedMesh> embedded_;
   std::optional<NamedPieces> pieces_;
   std::vector<int32_t> node_pieces_;

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 #include "core/surface/point_motion.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/surface/fine_box.h"
 #include "tests/unit/core/surface/surface_checks.h"
 
 namespace cleave {
@@ -16,25 +19,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-// The boundary of a box of finer cells, its points moved by `place`.
-template <typename Place>
-RenderMesh FineBox(std::array<int, 3> cells, const Vec3& size, const Place& place) {
-  const SurfaceCase box(KuhnBox(cells, size));
-  const SurfaceTopology surface = ExtractSurface(box.mesh, box.incidence, box.faces, {}, {});
-  RenderMesh render;
-  for (const SurfacePoint& point : surface.points) render.points.push_back(place(point.rest));
-  render.triangles = surface.triangles;
-  for (const auto& triangle : render.triangles) {
-    CornerUvs uvs{};
-    for (size_t k = 0; k < 3; ++k) {
-      const Vec3& at = surface.points[static_cast<size_t>(triangle[k])].rest;
-      uvs[k] = {static_cast<float>(at[0]), static_cast<float>(at[1])};
-    }
-    render.uvs.push_back(uvs);
-  }
-  return render;
-}
 
 double VolumeOf(const std::vector<std::array<int32_t, 3>>& triangles,
                 const std::vector<Vec3>& points) {
@@ -76,8 +60,7 @@ class EmbeddedMeshTest : public ::testing::Test {
   }
 
   // Closed pieces that share no points and add up to the render mesh.
-  void ExpectSound(EmbeddedMesh& embedded, const NamedPieces& pieces) {
-    embedded.Cut(pieces);
+  void ExpectSound(const EmbeddedMesh& embedded, const NamedPieces& pieces) {
     const SurfaceTopology& surface = embedded.topology();
     EXPECT_EQ(embedded.open_faces(), 0);
     EXPECT_EQ(CountOpenEdges(surface.triangles), 0);
@@ -92,10 +75,35 @@ class EmbeddedMeshTest : public ::testing::Test {
       ASSERT_EQ(surface.inside[i] != 0, embedded.sources()[i] < 0);
     }
     ASSERT_EQ(piece_of_point.size(), surface.points.size());
+    using Ids = std::set<SurfaceId>;
+    ASSERT_EQ(Ids(surface.point_ids.begin(), surface.point_ids.end()).size(),
+              surface.points.size());
+    ASSERT_EQ(Ids(surface.triangle_ids.begin(), surface.triangle_ids.end()).size(),
+              surface.triangles.size());
     std::vector<Vec3> points;
     for (const SurfacePoint& point : surface.points) points.push_back(point.rest);
     const double whole = VolumeOf(embedded.divided().triangles, embedded.divided().points);
     EXPECT_NEAR(VolumeOf(surface.triangles, points), whole, 1e-12 * whole);
+  }
+
+  void ExpectSoundWithout(const std::vector<int32_t>& broken, const RenderMesh& render) {
+    EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
+    NamedPieces pieces(box_.mesh, box_.incidence);
+    pieces.Break(broken);
+    embedded.Break(broken, pieces);
+    ExpectSound(embedded, pieces);
+  }
+
+  // Edges across the plane x = 0.9, between two layers of nodes, up to a height.
+  std::vector<int32_t> CutUpTo(double height) const {
+    std::vector<int32_t> cut;
+    for (int32_t edge = 0; edge < static_cast<int32_t>(box_.incidence.edge_count()); ++edge) {
+      const auto [a, b] = box_.incidence.edges[static_cast<size_t>(edge)];
+      const Vec3& p = box_.mesh.rest_positions[static_cast<size_t>(a)];
+      const Vec3& q = box_.mesh.rest_positions[static_cast<size_t>(b)];
+      if ((p[0] < 0.9) != (q[0] < 0.9) && std::max(p[1], q[1]) < height) cut.push_back(edge);
+    }
+    return cut;
   }
 
   static constexpr Vec3 kSize{2, 1.2, 1};
@@ -107,6 +115,7 @@ TEST_F(EmbeddedMeshTest, WholeIsTheMeshThatWasGiven) {
   ASSERT_TRUE(CheckRenderMesh(render).ok());
   EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
   const NamedPieces pieces(box_.mesh, box_.incidence);
+  embedded.Break({}, pieces);
   ExpectSound(embedded, pieces);
   EXPECT_EQ(embedded.topology().triangles.size(), embedded.divided().triangles.size());
   for (size_t i = 0; i < embedded.sources().size(); ++i) {
@@ -141,20 +150,17 @@ TEST_F(EmbeddedMeshTest, BreaksWithThePiecesIntoClosedParts) {
   meshes.push_back(FineBox({12, 11, 10}, kSize, wavy));
   meshes.push_back(FineBox({1, 1, 1}, kSize, scaled(1.03)));  // twelve triangles
   for (size_t m = 0; m < meshes.size(); ++m) {
-    EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, meshes[m]);
     for (uint64_t seed = 0; seed < 6; ++seed) {
       SCOPED_TRACE(std::to_string(m) + " " + std::to_string(seed));
-      NamedPieces pieces(box_.mesh, box_.incidence);
-      pieces.Break(Shatter(seed, 2 + 3 * seed));
-      ASSERT_GT(pieces.count(), 1);
-      ASSERT_NO_FATAL_FAILURE(ExpectSound(embedded, pieces));
+      ASSERT_NO_FATAL_FAILURE(ExpectSoundWithout(Shatter(seed, 2 + 3 * seed), meshes[m]));
+      // Cracks that end somewhere, and pieces of any kind.
+      ASSERT_NO_FATAL_FAILURE(ExpectSoundWithout(
+          box_.RandomEdges(seed, 0.15 * static_cast<double>(seed + 1)), meshes[m]));
     }
     // Every node a piece.
-    NamedPieces crumbs(box_.mesh, box_.incidence);
     std::vector<int32_t> all(box_.incidence.edges.size());
     std::iota(all.begin(), all.end(), 0);
-    crumbs.Break(all);
-    ASSERT_NO_FATAL_FAILURE(ExpectSound(embedded, crumbs));
+    ASSERT_NO_FATAL_FAILURE(ExpectSoundWithout(all, meshes[m]));
   }
 }
 
@@ -163,16 +169,10 @@ TEST_F(EmbeddedMeshTest, PiecesHaveTheVolumesOfTheirCornerCells) {
   const RenderMesh render = FineBox({12, 12, 12}, kSize, [](const Vec3& at) { return at; });
   EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
   NamedPieces pieces(box_.mesh, box_.incidence);
-  std::vector<int32_t> cut;
-  for (int32_t edge = 0; edge < static_cast<int32_t>(box_.incidence.edge_count()); ++edge) {
-    const auto [a, b] = box_.incidence.edges[static_cast<size_t>(edge)];
-    if ((box_.mesh.rest_positions[static_cast<size_t>(a)][0] < 0.9) !=
-        (box_.mesh.rest_positions[static_cast<size_t>(b)][0] < 0.9))
-      cut.push_back(edge);
-  }
+  const std::vector<int32_t> cut = CutUpTo(10);
   pieces.Break(cut);
   ASSERT_EQ(pieces.count(), 2);
-  embedded.Cut(pieces);
+  embedded.Break(cut, pieces);
   // Crack faces stay between the layers, whatever points they share.
   const double low = 2.0 / 3, high = 1;
   for (size_t i = 0; i < embedded.topology().triangles.size(); ++i) {
@@ -209,8 +209,7 @@ TEST_F(EmbeddedMeshTest, FollowsRigidMotionsOfEachPieceExactly) {
   const std::vector<int32_t> broken = Shatter(3, 4);
   NamedPieces pieces(box_.mesh, box_.incidence);
   pieces.Break(broken);
-  embedded.Cut(pieces);
-  embedded.SetMasks(TetEdgeMasks(box_.incidence, broken));
+  embedded.Break(broken, pieces);
   const auto turned = [&](const Vec3& at, int32_t piece) {
     const Matrix3d rotation =
         Eigen::AngleAxisd(0.4 + piece, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
@@ -253,6 +252,92 @@ TEST_F(EmbeddedMeshTest, FollowsRigidMotionsOfEachPieceExactly) {
     }
   }
   EXPECT_GT(checked, 1000u);
+}
+
+TEST_F(EmbeddedMeshTest, CracksThatCutNothingOffOpenAndCloseAtTheirTips) {
+  const RenderMesh render = FineBox({24, 16, 12}, kSize, [](const Vec3& at) { return at; });
+  EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
+  NamedPieces pieces(box_.mesh, box_.incidence);
+  const std::vector<int32_t> cut = CutUpTo(0.7);
+  pieces.Break(cut);
+  ASSERT_EQ(pieces.count(), 1);
+  embedded.Break(cut, pieces);
+  ASSERT_NO_FATAL_FAILURE(ExpectSound(embedded, pieces));
+  // The right part turns about the upper edge of the cut: the crack opens like a book.
+  std::vector<Vec3> positions = box_.mesh.rest_positions;
+  for (Vec3& at : positions) {
+    if (at[0] > 0.9) at[0] += 0.1 * (kSize[1] - at[1]);
+  }
+  std::vector<Vec3> points;
+  PointMotion(box_.mesh, box_.incidence).Move(embedded.topology(), positions, points);
+  // How far copies of a place come apart, by height.
+  const SurfaceTopology& surface = embedded.topology();
+  std::map<Vec3, std::vector<double>> copies;
+  for (size_t i = 0; i < points.size(); ++i) copies[surface.points[i].rest].push_back(points[i][0]);
+  double widest = 0;
+  double highest = 0;
+  for (const auto& [rest, places] : copies) {
+    const auto [low, high] = std::minmax_element(places.begin(), places.end());
+    if (places.size() < 2) continue;
+    EXPECT_LE(*high - *low, 0.1 * (kSize[1] - rest[1]) + 0.05) << rest[1];
+    widest = std::max(widest, *high - *low);
+    highest = std::max(highest, rest[1]);
+  }
+  EXPECT_NEAR(widest, 0.12, 0.03);  // at the mouth
+  EXPECT_GT(highest, 0.5);
+  EXPECT_LT(highest, 0.95);  // closed above
+  // Nothing on either side is stretched across the crack.
+  for (size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      const auto a = static_cast<size_t>(surface.triangles[i][k]);
+      const auto b = static_cast<size_t>(surface.triangles[i][(k + 1) % 3]);
+      if (surface.points[a].rest[1] > 0.5 || surface.points[b].rest[1] > 0.5) continue;
+      const double before =
+          (Vector3d(surface.points[a].rest.data()) - Vector3d(surface.points[b].rest.data()))
+              .norm();
+      const double now = (Vector3d(points[a].data()) - Vector3d(points[b].data())).norm();
+      EXPECT_LT(now, before + 0.035);
+    }
+  }
+}
+
+TEST_F(EmbeddedMeshTest, BreakingBitByBitGivesTheSameAsAtOnceAndCostsWhatBroke) {
+  const RenderMesh render = FineBox({12, 9, 8}, kSize, [](const Vec3& at) {
+    return Vec3{at[0] + 0.03 * std::sin(9 * at[1]), at[1], at[2] + 0.03 * std::sin(7 * at[0])};
+  });
+  const auto by_id = [](const EmbeddedMesh& embedded) {
+    const SurfaceTopology& surface = embedded.topology();
+    std::map<SurfaceId, std::tuple<std::array<SurfaceId, 3>, int32_t, CornerUvs>> triangles;
+    for (size_t i = 0; i < surface.triangles.size(); ++i) {
+      std::array<SurfaceId, 3> corners{};
+      for (size_t k = 0; k < 3; ++k)
+        corners[k] = surface.point_ids[static_cast<size_t>(surface.triangles[i][k])];
+      triangles[surface.triangle_ids[i]] = {corners, embedded.sources()[i], embedded.uvs()[i]};
+    }
+    std::map<SurfaceId, std::pair<Vec3, uint8_t>> points;
+    for (size_t i = 0; i < surface.points.size(); ++i)
+      points[surface.point_ids[i]] = {surface.points[i].rest, surface.points[i].owners};
+    return std::pair(triangles, points);
+  };
+  std::vector<int32_t> broken = box_.RandomEdges(5, 0.5);
+  EmbeddedMesh bit_by_bit(box_.mesh, box_.incidence, box_.faces, render);
+  NamedPieces pieces(box_.mesh, box_.incidence);
+  int64_t dearest = 0;
+  std::map<SurfaceId, Vec3> rests;
+  for (const int32_t edge : broken) {
+    pieces.Break(std::array{edge});
+    dearest = std::max(dearest, bit_by_bit.Break(std::array{edge}, pieces));
+    // A point that is there stays where it is at rest.
+    const SurfaceTopology& surface = bit_by_bit.topology();
+    for (size_t i = 0; i < surface.points.size(); i += 7)
+      ASSERT_EQ(rests.emplace(surface.point_ids[i], surface.points[i].rest).first->second,
+                surface.points[i].rest);
+  }
+  EmbeddedMesh at_once(box_.mesh, box_.incidence, box_.faces, render);
+  at_once.Break(broken, pieces);
+  EXPECT_TRUE(by_id(bit_by_bit) == by_id(at_once));
+  EXPECT_GT(dearest, 0);
+  EXPECT_LT(dearest, static_cast<int64_t>(at_once.divided().triangles.size()) / 8);
 }
 
 TEST(RenderMesh, OneInOtherUnitsOrElsewhereIsRefused) {
