@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
@@ -17,7 +18,6 @@
 #include "client/io/bake/bake.h"
 #include "client/io/export/export_series.h"
 #include "client/io/series/write_aside.h"
-#include "client/io/surface/surface_file.h"
 #include "core/base/faults.h"
 #include "core/base/status.h"
 
@@ -70,26 +70,6 @@ absl::Status ExportPlot(const Options& options) {
   return absl::OkStatus();
 }
 
-absl::Status ExportBake(Program& program, const Options& options, const RecordedRun& run,
-                        const FrameSource& frames) {
-  BakeOptions target;
-  target.folder = TargetFolder(options);
-  target.name = options.name;
-  target.format = BakeFormats().at(options.format);
-  target.playback_rate = options.rate;
-  target.velocities = options.velocities;
-  PreviewOptions look;
-  CLEAVE_RETURN_IF_ERROR(ApplyRunLook(options.run, run.mesh, look));
-  target.up = look.camera.up.value_or(Vec3{0, 0, 1});
-  CLEAVE_ASSIGN_OR_RETURN(
-      const BakeResult result,
-      WriteBake(run.mesh, frames, target, ShowingProgress("baking frames", program.interrupt)));
-  PrintResult(result.path);
-  for (const std::string& path : result.also) PrintResult(path);
-  PrintNote(absl::StrCat(result.written, " frames written, ", result.kept, " were there already"));
-  return absl::OkStatus();
-}
-
 // Options that the format has no use for, all at once.
 absl::Status CheckFormat(const Options& options) {
   Faults faults;
@@ -98,7 +78,8 @@ absl::Status CheckFormat(const Options& options) {
       faults.Error(option, absl::StrCat("goes with --format ", absl::StrJoin(formats, ", "),
                                         ", not ", options.format));
   };
-  goes_with(!options.render_mesh.empty(), "--render-mesh", {"vtu", "ply", "obj"});
+  goes_with(!options.render_mesh.empty(), "--render-mesh",
+            {"vtu", "ply", "obj", "bake-pc2", "bake-mdd", "glb", "usda"});
   goes_with(options.rate.has_value(), "--rate", {"bake-mdd", "glb", "usda"});
   goes_with(options.velocities, "--velocities", {"bake-pc2", "bake-mdd", "glb"});
   goes_with(!options.reports.empty(), "--reports", {"plot"});
@@ -114,42 +95,58 @@ absl::Status CheckFormat(const Options& options) {
   return faults.ToStatus();
 }
 
-absl::StatusOr<RenderMesh> LoadRenderMesh(const Options& options, const TetMesh& mesh) {
-  CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(options.render_mesh));
-  for (Vec3& point : surface.vertices) {
-    for (double& coordinate : point) coordinate *= options.render_scale.value_or(1);
-  }
-  RenderMesh render{std::move(surface.vertices), std::move(surface.triangles),
-                    std::move(surface.uvs)};
-  absl::Status status = CheckRenderMesh(render);
-  if (status.ok()) status = CheckRenderMeshFits(render, mesh.rest_positions);
-  if (!status.ok())
-    return absl::InvalidArgumentError(absl::StrCat(options.render_mesh, ": ", status.message()));
-  if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
-    PrintNote(absl::StrCat(options.render_mesh, " is not closed: ", open,
-                           " edges have no counterpart, and pieces will have holes there"));
-  return render;
+void NoteOpenFaces(int64_t open_faces) {
+  if (open_faces == 0) return;
+  PrintNote(absl::StrCat("the render mesh does not go round the body at ", open_faces,
+                         " faces; pieces may have holes where these break"));
+}
+
+absl::Status ExportBake(Program& program, const Options& options, const RecordedRun& run,
+                        const FrameSource& frames, const RenderMesh* render_mesh) {
+  BakeOptions target;
+  target.folder = TargetFolder(options);
+  target.name = options.name;
+  target.format = BakeFormats().at(options.format);
+  target.playback_rate = options.rate;
+  target.velocities = options.velocities;
+  target.render_mesh = render_mesh;
+  PreviewOptions look;
+  CLEAVE_RETURN_IF_ERROR(ApplyRunLook(options.run, run.mesh, look));
+  target.up = look.camera.up.value_or(Vec3{0, 0, 1});
+  CLEAVE_ASSIGN_OR_RETURN(
+      const BakeResult result,
+      WriteBake(run.mesh, frames, target, ShowingProgress("baking frames", program.interrupt)));
+  PrintResult(result.path);
+  for (const std::string& path : result.also) PrintResult(path);
+  PrintNote(absl::StrCat(result.written, " frames written, ", result.kept, " were there already"));
+  NoteOpenFaces(result.open_faces);
+  return absl::OkStatus();
 }
 
 absl::Status Export(Program& program, const Options& options) {
   CLEAVE_RETURN_IF_ERROR(CheckFormat(options));
   if (options.format == "plot") return ExportPlot(options);
+  const BoundedStop bounded(program.interrupt);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
                           SelectFrames(run.recording, options.first, options.last, options.stride));
-  if (BakeFormats().count(options.format) > 0) return ExportBake(program, options, run, frames);
+  std::optional<RenderMesh> render_mesh;
+  if (!options.render_mesh.empty()) {
+    CLEAVE_ASSIGN_OR_RETURN(
+        render_mesh,
+        LoadRenderMesh(options.render_mesh, options.render_scale.value_or(1), run.mesh));
+  }
+  const RenderMesh* shown = render_mesh ? &*render_mesh : nullptr;
+  if (BakeFormats().count(options.format) > 0)
+    return ExportBake(program, options, run, frames, shown);
   ExportOptions target;
   target.folder = TargetFolder(options);
   target.name = options.name;
   if (options.format != "obj") {
     CLEAVE_ASSIGN_OR_RETURN(target.node_potencies, RunPotencies(options.run, run.mesh));
   }
-  RenderMesh render_mesh;
-  if (!options.render_mesh.empty()) {
-    CLEAVE_ASSIGN_OR_RETURN(render_mesh, LoadRenderMesh(options, run.mesh));
-    target.render_mesh = &render_mesh;
-  }
+  target.render_mesh = shown;
   const Progress progress = ShowingProgress("exporting frames", program.interrupt);
   const auto result = options.format == "ply" ? WritePlySeries(run.mesh, frames, target, progress)
                       : options.format == "obj"
@@ -161,9 +158,7 @@ absl::Status Export(Program& program, const Options& options) {
   if (!result.ok()) return result.status();
   PrintResult(result->collection.empty() ? target.folder : result->collection);
   PrintNote(absl::StrCat(result->written, " files written, ", result->kept, " were there already"));
-  if (result->open_faces > 0)
-    PrintNote(absl::StrCat("the render mesh does not go round the body at ", result->open_faces,
-                           " faces; pieces may have holes where these break"));
+  NoteOpenFaces(result->open_faces);
   return absl::OkStatus();
 }
 
@@ -196,9 +191,8 @@ void AddExport(CLI::App& app, Program& program) {
       ->type_name("METRES");
   verb->add_option(
           "--render-mesh", options->render_mesh,
-          "For vtu, ply and obj: a fine triangle mesh (.obj, .ply, .stl) round the body at "
-          "rest, which is written in place of its surface; it follows and breaks with the "
-          "pieces")
+          "A fine triangle mesh (.obj, .ply, .stl) round the body at rest, which is written in "
+          "place of its surface; it follows and breaks as the body does. Not for vtu-volume")
       ->type_name("FILE");
   verb->add_option("--render-scale", options->render_scale,
                    "Metres for one unit of the render mesh; default: 1")

@@ -10,6 +10,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
 #include "client/cli/program.h"
 #include "client/cli/run_results.h"
@@ -33,6 +34,8 @@ struct Options {
   SheetOptions sheet_look;
   AnimationOptions animation_look;
   std::optional<double> azimuth, elevation;
+  std::string render_mesh;
+  std::optional<double> render_scale;
 };
 
 // Pictures of one recording, each written when it is drawn.
@@ -49,6 +52,14 @@ class Pictures {
         return absl::FailedPreconditionError(absl::StrCat(
             "--color impurity: there is no scene with impurities beside ", options_.run));
       }
+    }
+    if (!options_.render_mesh.empty()) {
+      CLEAVE_ASSIGN_OR_RETURN(
+          render_mesh_,
+          LoadRenderMesh(options_.render_mesh, options_.render_scale.value_or(1), run_.mesh));
+      look_.render_mesh = &*render_mesh_;
+    } else if (options_.render_scale.has_value()) {
+      return absl::InvalidArgumentError("--render-scale is of --render-mesh, which is missing");
     }
     look_.camera.azimuth = options_.azimuth;
     look_.camera.elevation = options_.elevation;
@@ -146,11 +157,13 @@ class Pictures {
   const Options& options_;
   const RecordedRun& run_;
   PreviewOptions look_;
+  std::optional<RenderMesh> render_mesh_;
   FrameSource frames_;
   std::string folder_;
 };
 
 absl::Status Preview(Program& program, const Options& options) {
+  const BoundedStop bounded(program.interrupt);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   return Pictures(program, options, run).Draw();
@@ -207,6 +220,14 @@ void AddPreview(CLI::App& app, Program& program) {
   verb->add_option("--elevation", options->elevation, "Lifts the camera above the ground")
       ->check(CLI::Range(-88.0, 88.0))
       ->type_name("DEGREES");
+  verb->add_option("--render-mesh", options->render_mesh,
+                   "A fine triangle mesh (.obj, .ply, .stl) round the body at rest, which is drawn "
+                   "in place of its surface; it follows and breaks as the body does")
+      ->type_name("FILE");
+  verb->add_option("--render-scale", options->render_scale,
+                   "Metres for one unit of the render mesh; default: 1")
+      ->check(CLI::PositiveNumber)
+      ->type_name("METRES");
   verb->add_option("--title", options->look.title, "Written into the pictures");
   verb->footer(
       "Draws the sheet and the animation when nothing is chosen; prints the paths.\n"

@@ -16,6 +16,7 @@
 #include "client/cli/scene_input.h"
 #include "client/io/preview/scene_look.h"
 #include "client/io/scene/scene_file.h"
+#include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
 #include "core/mesh/incidence.h"
@@ -92,6 +93,23 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   if (run.recording.frames.count == 0)
     return absl::FailedPreconditionError(absl::StrCat(frames, ": holds no frames yet"));
   return run;
+}
+
+absl::StatusOr<RenderMesh> LoadRenderMesh(const std::string& path, double scale,
+                                          const TetMesh& mesh) {
+  CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(path));
+  for (Vec3& point : surface.vertices) {
+    for (double& coordinate : point) coordinate *= scale;
+  }
+  RenderMesh render{std::move(surface.vertices), std::move(surface.triangles),
+                    std::move(surface.uvs)};
+  absl::Status status = CheckRenderMesh(render);
+  if (status.ok()) status = CheckRenderMeshFits(render, mesh.rest_positions);
+  if (!status.ok()) return absl::InvalidArgumentError(absl::StrCat(path, ": ", status.message()));
+  if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
+    PrintNote(absl::StrCat(path, " is not closed: ", open,
+                           " edges have no counterpart, and pieces will have holes there"));
+  return render;
 }
 
 absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,

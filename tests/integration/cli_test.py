@@ -437,9 +437,18 @@ class EmbeddedRuns(CliTest):
         code, _, errors = cleave("export", out, "--format", "ply", "--render-mesh", mesh)
         self.assertEqual(code, 3)
         self.assertIn("same units", errors)
-        code, _, errors = cleave("export", out, "--format", "glb", "--render-mesh", mesh)
+        code, _, errors = cleave("export", out, "--format", "vtu-volume", "--render-mesh", mesh)
         self.assertEqual(code, 3)
-        self.assertIn("--render-mesh: goes with --format obj, ply, vtu, not glb", errors)
+        self.assertIn("--render-mesh: goes with --format", errors)
+        mesh.write_text("v 0 0 0\nv .4 0 0\nv 0 .1 0\nv 0 0 .1\nvt 0 0\nvt 1 0\nvt 0 .625\n"
+                        "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/2 3/3\n")
+        code, output, errors = cleave("export", out, "--format", "bake-pc2", "--render-mesh", mesh)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("vt 0 0.625", (out / "bake-pc2/cleave.obj").read_text())
+        self.assertEqual(cleave("export", out, "--format", "glb", "--render-mesh", mesh)[0], 0)
+        code, output, errors = cleave("preview", out, "--still", "2", "--width", "64",
+                                      "--render-mesh", mesh)
+        self.assertEqual((code, output), (0, f"{out}/still_000002.png\n"), errors)
 
     def test_damaged_frame_is_named_and_exits_3_and_files_follow_the_umask(self):
         out = self.folder / "out"

@@ -61,7 +61,7 @@ for surface_path, volume_path in zip(surfaces, volumes):
   grid = read(vtkXMLUnstructuredGridReader(), surface_path)
   assert {"piece", "id", "rest", "displacement", "velocity", "strain", "damage"} <= \
       names(grid.GetPointData())
-  assert {"piece", "id", "region", "inside", "tet"} <= names(grid.GetCellData())
+  assert {"piece", "id", "region", "inside", "tet", "source"} <= names(grid.GetCellData())
   surface = polygons(grid)
   assert surface.GetNumberOfCells() == grid.GetNumberOfCells()
   assert open_edges(surface) == 0, surface_path

@@ -75,7 +75,8 @@ class Bake {
     CLEAVE_RETURN_IF_ERROR(NamePieces(pieces));
     timing_ = {frames_.count, first_.frame, last_.frame,
                first_.time,   last_.time,   options_.playback_rate};
-    surface_ = BakeSurface(mesh_, incidence_, pieces, last_.broken_edges);
+    surface_ = BakeSurface(mesh_, incidence_, pieces, last_.broken_edges, options_.render_mesh);
+    result_.open_faces = surface_.open_faces;
     if (surface_.pieces.empty() || surface_.topology.triangles.empty()) {
       return absl::InvalidArgumentError("the mesh has no tets, so there are no pieces to bake");
     }
@@ -142,10 +143,11 @@ class Bake {
   // apart at once.
   DataKey StartKey(absl::string_view format) const {
     const auto& up = options_.up;
-    DataKey key(mesh_, absl::StrFormat(
-                           "bake %s %s, %d frames, rate %.17g, up %.17g %.17g %.17g, %d", format,
-                           options_.name, frames_.count, options_.playback_rate.value_or(0), up[0],
-                           up[1], up[2], options_.velocities ? 1 : 0));
+    DataKey key(mesh_,
+                absl::StrFormat("bake %s %s, %d frames, rate %.17g, up %.17g %.17g %.17g, %d%s",
+                                format, options_.name, frames_.count,
+                                options_.playback_rate.value_or(0), up[0], up[1], up[2],
+                                options_.velocities ? 1 : 0, RenderMeshKey(options_.render_mesh)));
     key.Add(first_);
     key.Add(last_);
     // Names of pieces stand before the first frame and depend on all.
@@ -179,6 +181,7 @@ class Bake {
     shown.inside = surface_.topology.inside;
     shown.pieces = surface_.triangle_pieces;
     shown.regions = surface_.triangle_regions;
+    shown.uvs = surface_.uvs;
     CLEAVE_ASSIGN_OR_RETURN(
         const std::string bytes,
         EncodeObj(shown, materials_,

@@ -10,6 +10,7 @@
 #include "client/io/series/frame_source.h"
 #include "core/base/vec3.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -31,6 +32,9 @@ struct BakeOptions {
   // target. USDA always has them.
   bool velocities = false;
   Vec3 up{0, 0, 1};  // of the scene: what GLB turns to its y
+  // Baked in place of the body's surface, where it is given (embedded_mesh.h); CheckRenderMesh
+  // holds.
+  const RenderMesh* render_mesh = nullptr;
 };
 
 struct BakeResult {
@@ -38,6 +42,7 @@ struct BakeResult {
   int64_t kept = 0;               // frames that stood already, made from the same data
   std::string path;               // the file with the frames
   std::vector<std::string> also;  // the others
+  int64_t open_faces = 0;         // of a render mesh: EmbeddedMesh::open_faces
 };
 
 // Writes a run as one surface whose topology is the same in all frames (baked_surface.h), in the

@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
+#include "client/io/export/surface_materials.h"
 #include "client/io/series/frame_check.h"
 #include "core/base/status.h"
 #include "core/mesh/tet_geometry.h"
+#include "core/surface/embedded_mesh.h"
 #include "core/surface/faces.h"
 #include "core/surface/visible_surface.h"
 
@@ -59,10 +61,18 @@ void AppendTetsOf(const TetMesh& mesh, const Incidence& incidence, const Surface
 }  // namespace
 
 BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const NamedPieces& pieces,
-                         std::span<const int32_t> broken_edges) {
+                         std::span<const int32_t> broken_edges, const RenderMesh* render_mesh) {
   BakedSurface surface;
-  surface.topology =
-      ExtractSurface(mesh, incidence, BuildFaces(mesh), broken_edges, SurfaceOptions{});
+  const Faces faces = BuildFaces(mesh);
+  if (render_mesh != nullptr) {
+    EmbeddedMesh embedded(mesh, incidence, faces, *render_mesh);
+    embedded.Break(broken_edges, pieces);
+    surface.topology = embedded.topology();
+    surface.uvs = embedded.uvs();
+    surface.open_faces = embedded.open_faces();
+  } else {
+    surface.topology = ExtractSurface(mesh, incidence, faces, broken_edges, SurfaceOptions{});
+  }
   surface.pieces = FindPieces(mesh, pieces);
   const SurfaceTopology& topology = surface.topology;
   surface.point_pieces.assign(topology.points.size(), -1);
@@ -75,6 +85,14 @@ BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const 
     }
   }
   return surface;
+}
+
+std::array<float, 2> BakedSurface::UvAt(size_t triangle, size_t corner) const {
+  if (!uvs.empty() && topology.inside[triangle] == 0) return uvs[triangle][corner];
+  const auto& points = topology.triangles[triangle];
+  const auto rest = [&](size_t k) { return topology.points[static_cast<size_t>(points[k])].rest; };
+  const auto [u, v] = RestUv(rest(corner), FacedAxis(rest(0), rest(1), rest(2)));
+  return {static_cast<float>(u), static_cast<float>(v)};
 }
 
 BakedMotion::BakedMotion(const TetMesh& mesh, const Incidence& incidence,

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_CLIENT_IO_BAKE_BAKED_SURFACE_H_
 #define CLEAVE_CLIENT_IO_BAKE_BAKED_SURFACE_H_
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
+#include "core/surface/render_mesh.h"
 #include "core/surface/surface_topology.h"
 
 namespace cleave {
@@ -33,12 +36,18 @@ struct BakedSurface {
   std::vector<int32_t> triangle_pieces;
   std::vector<int32_t> triangle_regions;
   std::vector<int32_t> point_pieces;
+  std::vector<CornerUvs> uvs;  // of a render mesh, a triangle each; empty: it has none
+  int64_t open_faces = 0;      // of a render mesh: EmbeddedMesh::open_faces
+
+  // Texture coordinates of a triangle's corner: its own on outer faces where there are any, else
+  // RestUv.
+  std::array<float, 2> UvAt(size_t triangle, size_t corner) const;
 };
 
 // Preconditions: `broken_edges`, those of the last frame, are ascending and in range; `pieces` has
-// come to the last frame.
+// come to the last frame. With a render mesh that stands for the body's surface; null: none.
 BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const NamedPieces& pieces,
-                         std::span<const int32_t> broken_edges);
+                         std::span<const int32_t> broken_edges, const RenderMesh* render_mesh);
 
 // Carries a baked surface through the frames of its run. A copy of a point moves with all nodes
 // that some tet still joins to its own at that frame, so copies coincide to the last bit for as

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
@@ -20,6 +21,10 @@ constexpr uint64_t kMostBytes = std::numeric_limits<uint32_t>::max();
 class Glb : public BakeCodec {
  public:
   explicit Glb(const BakeContext& context) : context_(context), layout_(context) {
+    std::vector<Vec3> rest_points;
+    for (const SurfacePoint& point : context.surface.topology.points)
+      rest_points.push_back(point.rest);
+    layout_.normals().Find(rest_points, rest_normals_);
     values_.rest.resize(primitives().size());
     for (size_t p = 0; p < primitives().size(); ++p) {
       values_.rest[p] = BoundsOf(primitives()[p], [&](size_t point) { return Rest(point); });
@@ -39,16 +44,18 @@ class Glb : public BakeCodec {
     for (const GlbPrimitive& primitive : primitives()) {
       for (const uint32_t index : primitive.indices) writer.Put(index);
     }
-    for (const auto& [point, axis] : layout_.vertices()) {
-      for (const float value : Rest(point)) writer.Put(value);
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      for (const float value : Rest(vertex.point)) writer.Put(value);
     }
-    for (const auto& [point, axis] : layout_.vertices()) {
-      const auto [u, v] = RestUv(context_.surface.topology.points[point].rest, axis);
-      writer.Put(static_cast<float>(u));
-      writer.Put(static_cast<float>(1 - v));  // glTF's v points down the picture
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      for (const float value : rest_normals_[vertex.normal]) writer.Put(value);
     }
-    for (const auto& [point, axis] : layout_.vertices()) {
-      writer.Put(static_cast<float>(context_.surface.point_pieces[point]));
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      writer.Put(vertex.uv[0]);
+      writer.Put(1 - vertex.uv[1]);  // glTF's v points down the picture
+    }
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      writer.Put(static_cast<float>(context_.surface.point_pieces[vertex.point]));
     }
     return out;
   }
@@ -74,12 +81,19 @@ class Glb : public BakeCodec {
 
   void Encode(int64_t, const BakeFrame& frame, std::string& out) const override {
     ByteWriter writer(out);
-    for (const auto& [point, axis] : layout_.vertices()) {
-      for (const float value : Displacement(frame.points, point)) writer.Put(value);
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      for (const float value : Displacement(frame.points, vertex.point)) writer.Put(value);
+    }
+    std::vector<std::array<float, 3>> normals;
+    layout_.normals().Find(frame.points, normals);
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      for (size_t k = 0; k < 3; ++k)
+        writer.Put(normals[vertex.normal][k] - rest_normals_[vertex.normal][k]);
     }
     if (!context_.velocities) return;
-    for (const auto& [point, axis] : layout_.vertices()) {
-      for (const double value : frame.velocities[point]) writer.Put(static_cast<float>(value));
+    for (const GlbVertex& vertex : layout_.vertices()) {
+      for (const double value : frame.velocities[vertex.point])
+        writer.Put(static_cast<float>(value));
     }
   }
 
@@ -123,7 +137,7 @@ class Glb : public BakeCodec {
     constexpr float kLarge = std::numeric_limits<float>::infinity();
     GlbBounds bounds{{kLarge, kLarge, kLarge}, {-kLarge, -kLarge, -kLarge}};
     for (size_t i = 0; i < primitive.vertices; ++i) {
-      const std::array<float, 3> at = value(layout_.vertices()[primitive.first_vertex + i].first);
+      const std::array<float, 3> at = value(layout_.vertices()[primitive.first_vertex + i].point);
       for (size_t k = 0; k < 3; ++k) {
         bounds.low[k] = std::min(bounds.low[k], at[k]);
         bounds.high[k] = std::max(bounds.high[k], at[k]);
@@ -148,6 +162,7 @@ class Glb : public BakeCodec {
 
   const BakeContext& context_;
   const GlbLayout layout_;
+  std::vector<std::array<float, 3>> rest_normals_;  // of NormalGroups
   GlbValues values_;
   size_t json_bytes_ = 0;
 };

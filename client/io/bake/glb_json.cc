@@ -83,12 +83,10 @@ class GlbJson {
     out += "],";
   }
 
-  // Accessors of a primitive: indices, rest, texture, piece, and what velocities are added to; then
-  // those of its targets.
-  size_t FirstTarget() const { return context_.velocities ? 5 : 4; }
-  size_t AccessorsEach() const {
-    return FirstTarget() + layout_.frames() * (context_.velocities ? 2 : 1);
-  }
+  // Accessors of a primitive: indices, rest, normals, texture, piece, and what velocities are added
+  // to; then those of its targets.
+  size_t FirstTarget() const { return context_.velocities ? 6 : 5; }
+  size_t AccessorsEach() const { return FirstTarget() + layout_.frames() * layout_.vectors_each(); }
   size_t TimeAccessor() const { return layout_.primitives().size() * AccessorsEach(); }
 
   void AddMesh(std::string& out) const {
@@ -97,13 +95,15 @@ class GlbJson {
       const size_t accessor = p * AccessorsEach();
       absl::StrAppend(&out, p == 0 ? "" : ",", R"({"material":)", p, R"(,"indices":)", accessor,
                       R"(,"attributes":{"POSITION":)", accessor + 1, R"(,"_REST":)", accessor + 1,
-                      R"(,"TEXCOORD_0":)", accessor + 2, R"(,"_PIECE":)", accessor + 3);
-      if (context_.velocities) absl::StrAppend(&out, R"(,"_VELOCITY":)", accessor + 4);
+                      R"(,"NORMAL":)", accessor + 2, R"(,"TEXCOORD_0":)", accessor + 3,
+                      R"(,"_PIECE":)", accessor + 4);
+      if (context_.velocities) absl::StrAppend(&out, R"(,"_VELOCITY":)", accessor + 5);
       out += R"(},"targets":[)";
       for (size_t frame = 0; frame < layout_.frames(); ++frame) {
-        const size_t target = accessor + FirstTarget() + frame * (context_.velocities ? 2 : 1);
-        absl::StrAppend(&out, frame == 0 ? "" : ",", R"({"POSITION":)", target);
-        if (context_.velocities) absl::StrAppend(&out, R"(,"_VELOCITY":)", target + 1);
+        const size_t target = accessor + FirstTarget() + frame * layout_.vectors_each();
+        absl::StrAppend(&out, frame == 0 ? "" : ",", R"({"POSITION":)", target, R"(,"NORMAL":)",
+                        target + 1);
+        if (context_.velocities) absl::StrAppend(&out, R"(,"_VELOCITY":)", target + 2);
         out += '}';
       }
       out += "]}";
@@ -147,9 +147,11 @@ class GlbJson {
       AddAccessor(1, kGlbVectorBytes * first, primitive.vertices, kFloat, "VEC3", out);
       AddBounds(values_.rest[p].low, values_.rest[p].high, false, out);
       out += '}';
-      AddAccessor(2, 8 * first, primitive.vertices, kFloat, "VEC2", out);
+      AddAccessor(2, kGlbVectorBytes * first, primitive.vertices, kFloat, "VEC3", out);
       out += '}';
-      AddAccessor(3, 4 * first, primitive.vertices, kFloat, "SCALAR", out);
+      AddAccessor(3, 8 * first, primitive.vertices, kFloat, "VEC2", out);
+      out += '}';
+      AddAccessor(4, 4 * first, primitive.vertices, kFloat, "SCALAR", out);
       out += '}';
       if (context_.velocities) {  // without a view it is all zeros
         absl::StrAppend(&out, R"(,{"componentType":)", kFloat, R"(,"count":)", primitive.vertices,
@@ -157,21 +159,22 @@ class GlbJson {
       }
       for (uint64_t frame = 0; frame < layout_.frames(); ++frame) {
         const uint64_t offset = frame * layout_.target_bytes() + kGlbVectorBytes * first;
-        AddAccessor(4, offset, primitive.vertices, kFloat, "VEC3", out);
+        AddAccessor(5, offset, primitive.vertices, kFloat, "VEC3", out);
         const GlbBounds& bounds = values_.targets[frame * layout_.primitives().size() + p];
         AddBounds(bounds.low, bounds.high, longest, out);
         out += '}';
-        if (!context_.velocities) continue;
-        AddAccessor(4, offset + kGlbVectorBytes * layout_.vertices().size(), primitive.vertices,
-                    kFloat, "VEC3", out);
-        out += '}';
+        for (uint64_t vector = 1; vector < layout_.vectors_each(); ++vector) {
+          AddAccessor(5, offset + vector * layout_.vector_bytes(), primitive.vertices, kFloat,
+                      "VEC3", out);
+          out += '}';
+        }
       }
     }
     const auto count = layout_.frames();
-    AddAccessor(5, 0, count, kFloat, "SCALAR", out);
+    AddAccessor(6, 0, count, kFloat, "SCALAR", out);
     AddBounds<1>({values_.times.front()}, {values_.times.back()}, longest, out);
     out += '}';
-    AddAccessor(5, 4 * count, count * count, kFloat, "SCALAR", out);
+    AddAccessor(6, 4 * count, count * count, kFloat, "SCALAR", out);
     out += "}],";
   }
 
@@ -180,9 +183,10 @@ class GlbJson {
       uint64_t begin, end;
       int stride, target;
     };
-    const std::array<View, 6> views = {
+    const std::array<View, 7> views = {
         {{0, layout_.RestOffset(), 0, kIndices},
-         {layout_.RestOffset(), layout_.UvOffset(), 12, kVertices},
+         {layout_.RestOffset(), layout_.NormalOffset(), 12, kVertices},
+         {layout_.NormalOffset(), layout_.UvOffset(), 12, kVertices},
          {layout_.UvOffset(), layout_.PieceOffset(), 8, kVertices},
          {layout_.PieceOffset(), layout_.TargetOffset(), 4, kVertices},
          {layout_.TargetOffset(), layout_.TimeOffset(), 12, kVertices},

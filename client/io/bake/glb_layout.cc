@@ -1,12 +1,13 @@
 #include "client/io/bake/glb_layout.h"
 
 #include <map>
-
-#include "client/io/export/surface_materials.h"
+#include <tuple>
+#include <utility>
 
 namespace cleave {
 
-GlbLayout::GlbLayout(const BakeContext& context) : context_(context) {
+GlbLayout::GlbLayout(const BakeContext& context)
+    : context_(context), normals_(context.surface.topology) {
   const SurfaceTopology& topology = context.surface.topology;
   std::map<size_t, std::vector<size_t>> by_material;
   for (size_t i = 0; i < topology.triangles.size(); ++i) {
@@ -16,16 +17,15 @@ GlbLayout::GlbLayout(const BakeContext& context) : context_(context) {
   }
   for (const auto& [material, triangles] : by_material) {
     GlbPrimitive primitive{material, vertices_.size(), 0, index_count_, {}};
-    std::map<std::pair<size_t, size_t>, uint32_t> places;
+    std::map<std::tuple<size_t, size_t, float, float>, uint32_t> places;
     for (const size_t triangle : triangles) {
-      const auto& [a, b, c] = topology.triangles[triangle];
-      const auto rest = [&](int32_t p) { return topology.points[static_cast<size_t>(p)].rest; };
-      const size_t axis = FacedAxis(rest(a), rest(b), rest(c));
-      for (const int32_t point : topology.triangles[triangle]) {
-        const std::pair vertex{static_cast<size_t>(point), axis};
+      for (size_t k = 0; k < 3; ++k) {
+        const auto point = static_cast<size_t>(topology.triangles[triangle][k]);
+        const auto normal = static_cast<size_t>(normals_.group(triangle, k));
+        const auto [u, v] = context.surface.UvAt(triangle, k);
         const auto [place, is_new] =
-            places.try_emplace(vertex, static_cast<uint32_t>(places.size()));
-        if (is_new) vertices_.push_back(vertex);
+            places.try_emplace({point, normal, u, v}, static_cast<uint32_t>(places.size()));
+        if (is_new) vertices_.push_back({point, normal, {u, v}});
         primitive.indices.push_back(place->second);
       }
     }

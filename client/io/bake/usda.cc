@@ -184,13 +184,11 @@ class Usda : public BakeCodec {
         " (\n            interpolation = \"vertex\"\n        )\n        texCoord2f[] primvars:st "
         "= ";
     const auto texture = [&](size_t i) {
-      const auto& [a, b, c] = topology.triangles[i / 3];
-      const auto at = [&](int32_t p) { return topology.points[static_cast<size_t>(p)].rest; };
-      const auto [u, v] = RestUv(at(corner(i)), FacedAxis(at(a), at(b), at(c)));
+      const auto [u, v] = context_.surface.UvAt(i / 3, i % 3);
       out += '(';
-      AppendNumber(static_cast<float>(u), out);
+      AppendNumber(u, out);
       out += ", ";
-      AppendNumber(static_cast<float>(v), out);
+      AppendNumber(v, out);
       out += ')';
     };
     AppendList(3 * triangles, texture, out);

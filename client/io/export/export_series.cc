@@ -44,10 +44,7 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   grid.types.assign(surface.triangles.size(), kVtuTriangle);
   const std::vector<int32_t> pieces = PointPieces(surface);
   grid.point_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
-  // Those of a render mesh have none that would last.
-  const bool has_ids = sequence.embedded() == nullptr;
-  if (has_ids)
-    grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
+  grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
   grid.point_data.push_back(MakeVtuVectors("rest", surface.rest_points));
   grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
   grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
@@ -56,12 +53,12 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   if (!surface.potencies.empty()) {
     grid.point_data.push_back(MakeVtuArray<float>("potency", surface.potencies));
   }
-  if (has_ids)
-    grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
+  grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", surface.pieces));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("region", surface.regions));
   grid.cell_data.push_back(MakeVtuArray<uint8_t>("inside", surface.inside));
   grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", sequence.topology().tets));
+  grid.cell_data.push_back(MakeVtuArray<int64_t>("source", surface.sources));
   return grid;
 }
 
@@ -80,16 +77,6 @@ std::string PotencyName(const std::vector<double>& potencies) {
   return absl::StrCat(hash.Digest());
 }
 
-// What a render mesh adds to the name of a format.
-std::string RenderKey(const RenderMesh* mesh) {
-  if (mesh == nullptr) return "";
-  StateHash hash;
-  hash.Update(mesh->points.data(), mesh->points.size() * sizeof(Vec3));
-  hash.Update(mesh->triangles.data(), mesh->triangles.size() * sizeof(mesh->triangles[0]));
-  hash.Update(mesh->uvs.data(), mesh->uvs.size() * sizeof(CornerUvs));
-  return absl::StrCat(" render ", hash.Digest());
-}
-
 int64_t OpenFacesOf(const SurfaceSequence& sequence) {
   return sequence.embedded() == nullptr ? 0 : sequence.embedded()->open_faces();
 }
@@ -101,6 +88,7 @@ SequenceOptions Carried(const ExportOptions& options) {
           .displacements = true,
           .velocities = true,
           .node_potencies = options.node_potencies,
+          .sources = true,
           .render_mesh = options.render_mesh};
 }
 
@@ -112,7 +100,7 @@ class SeriesWriter {
         nodes_(mesh.node_count()),
         ending_(ending),
         key_(mesh, absl::StrCat(format, " ", PotencyName(options.node_potencies),
-                                RenderKey(options.render_mesh))) {}
+                                RenderMeshKey(options.render_mesh))) {}
 
   absl::Status Write(const FrameSource& frames, const Format& format, const Progress& progress) {
     if (frames.count <= 0) return absl::InvalidArgumentError("there are no frames to export");

@@ -38,10 +38,10 @@ struct ExportResult {
 // Point data of both contents: piece, rest (m), displacement (m, from rest), velocity (m/s, mean
 // since the frame before; 0 in the first), and potency where it is given. Surface: strain a point
 // (largest principal stretch less 1, mean of the tets round it), damage a point (share of broken
-// edges, mean of the tets round it), id a point and a cell (surface_ids.h); region, tet, piece and
-// inside (1: opened by a crack) a cell. Volume: region, tet, piece, strain, damage, broken_edges
-// (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces are those of SurfaceSequence, tets the
-// mesh file's.
+// edges, mean of the tets round it), id a point and a cell (surface_ids.h); region, tet, piece,
+// inside (1: opened by a crack) and source (ShownSurface::sources) a cell. Volume: region, tet,
+// piece, strain, damage, broken_edges (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces
+// are those of SurfaceSequence, tets the mesh file's.
 //
 // A file that an earlier call made from the same data is kept, so that a cut export goes on where
 // it was. Files are written aside and renamed. After an error (or a stop by `progress`, Cancelled)

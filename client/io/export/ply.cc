@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -30,6 +31,12 @@ absl::StatusOr<std::string> EncodePly(const ShownSurface& surface, absl::string_
     for (const int32_t point : surface.triangles[i]) {
       point_pieces[static_cast<size_t>(point)] = surface.pieces[i];
     }
+  }
+  constexpr int64_t kMostSource = std::numeric_limits<int32_t>::max();
+  for (size_t i = 0; i < surface.sources.size(); ++i) {
+    if (surface.sources[i] <= kMostSource) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("sources[", i, "]: ", surface.sources[i], " is above ", kMostSource));
   }
   // What the surface carries beside positions, a group of properties each.
   std::vector<Attribute> attributes;
@@ -60,9 +67,12 @@ absl::StatusOr<std::string> EncodePly(const ShownSurface& surface, absl::string_
   }
   absl::StrAppend(&out, "element face ", surface.triangles.size(),
                   "\nproperty list uchar int vertex_indices\nproperty int piece\n"
-                  "property int region\nproperty uchar inside\nend_header\n");
+                  "property int region\nproperty uchar inside\n");
+  if (!surface.sources.empty()) absl::StrAppend(&out, "property int source\n");
+  if (!surface.uvs.empty()) absl::StrAppend(&out, "property list uchar float texcoord\n");
+  absl::StrAppend(&out, "end_header\n");
   out.reserve(out.size() + surface.points.size() * (15 + 12 * attributes.size()) +
-              surface.triangles.size() * 22);
+              surface.triangles.size() * (surface.uvs.empty() ? 26 : 51));
   ByteWriter writer(out);
   const auto put = [&](const Vec3& vector) {
     for (const double coordinate : vector) writer.Put(static_cast<float>(coordinate));
@@ -86,6 +96,13 @@ absl::StatusOr<std::string> EncodePly(const ShownSurface& surface, absl::string_
     writer.Put(surface.pieces[i]);
     writer.Put(surface.regions[i]);
     writer.Put(surface.inside[i]);
+    if (!surface.sources.empty()) writer.Put(static_cast<int32_t>(surface.sources[i]));
+    if (surface.uvs.empty()) continue;
+    writer.Put<uint8_t>(6);
+    for (const auto& [u, v] : surface.uvs[i]) {
+      writer.Put(u);
+      writer.Put(v);
+    }
   }
   return out;
 }

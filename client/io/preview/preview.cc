@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -64,7 +65,8 @@ absl::StatusOr<Image> ComposeSheet(const Studio& studio, int tiles, int columns,
   const bool has_head = !options.title.empty() || LegendWidth(studio.legend(), 1) > 0;
   const TextStyle bold{.height = letters, .pen = 0.18};
   const int64_t width = int64_t{columns} * (studio.width() + gap) + gap;
-  const double title_width = TextWidth(options.title, bold);
+  const std::string title = Shortened(options.title, static_cast<double>(width) - 3.0 * gap, bold);
+  const double title_width = TextWidth(title, bold);
   const double legend_width = LegendWidth(studio.legend(), legend_letters);
   const bool two_lines =
       !options.title.empty() && title_width + legend_width + 6 * gap > static_cast<double>(width);
@@ -77,7 +79,7 @@ absl::StatusOr<Image> ComposeSheet(const Studio& studio, int tiles, int columns,
   }
   Image image(static_cast<int>(width), static_cast<int>(height));
   FillRectangle(0, 0, image.width, image.height, kPage, image);
-  DrawText(options.title, 1.5 * gap, 1.75 * letters, bold, image);
+  DrawText(title, 1.5 * gap, 1.75 * letters, bold, image);
   const double legend_left = two_lines || options.title.empty()
                                  ? 1.5 * gap
                                  : static_cast<double>(width) - 1.5 * gap - legend_width;
@@ -107,13 +109,46 @@ absl::Status CheckTurntable(const TurntableOptions& turntable) {
   return faults.ToStatus();
 }
 
+absl::Status CheckPosition(const FrameSource& frames, int64_t position) {
+  if (position >= 0 && position < frames.count) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
+}
+
 // A run of one of its frames.
 absl::StatusOr<FrameSource> OneOf(const FrameSource& frames, int64_t position) {
-  if (position < 0 || position >= frames.count) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
-  }
-  return FrameSource{1, [&frames, position](int64_t) { return frames.read(position); }};
+  CLEAVE_RETURN_IF_ERROR(CheckPosition(frames, position));
+  FrameSource one;
+  one.count = 1;
+  one.read = [&frames, position](int64_t) { return frames.read(position); };
+  one.pass_by = [&frames, position](int64_t, const FrameSource::Visit& visit) -> absl::Status {
+    for (int64_t before = 0; before <= position; ++before) {
+      if (frames.pass_by) CLEAVE_RETURN_IF_ERROR(frames.pass_by(before, visit));
+      if (before == position) break;
+      CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames.read(before));
+      CLEAVE_RETURN_IF_ERROR(visit(frame));
+    }
+    return absl::OkStatus();
+  };
+  return one;
+}
+
+// A frame on a stand that turns, and the run of it that the studio sees.
+struct Turning {
+  FrameSource one;
+  std::unique_ptr<Studio> studio;
+};
+
+absl::StatusOr<std::unique_ptr<Turning>> MakeTurning(const TetMesh& mesh, const FrameSource& frames,
+                                                     int64_t position,
+                                                     const TurntableOptions& turntable,
+                                                     const PreviewOptions& options) {
+  CLEAVE_RETURN_IF_ERROR(CheckTurntable(turntable));
+  auto turning = std::make_unique<Turning>();
+  CLEAVE_ASSIGN_OR_RETURN(turning->one, OneOf(frames, position));
+  CLEAVE_ASSIGN_OR_RETURN(turning->studio,
+                          Studio::Create(mesh, turning->one, options, Stand::kTurntable));
+  return turning;
 }
 
 double Angle(int picture, int pictures) { return 2 * std::numbers::pi * picture / pictures; }
@@ -122,10 +157,7 @@ double Angle(int picture, int pictures) { return 2 * std::numbers::pi * picture 
 
 absl::StatusOr<Image> RenderStill(const TetMesh& mesh, const FrameSource& frames, int64_t position,
                                   const PreviewOptions& options) {
-  if (position < 0 || position >= frames.count) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("frame position ", position, " is outside [0, ", frames.count, ")"));
-  }
+  CLEAVE_RETURN_IF_ERROR(CheckPosition(frames, position));
   CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, frames, options));
   Studio& studio = *made;
   CLEAVE_ASSIGN_OR_RETURN(Image image, studio.Draw(position));
@@ -187,10 +219,9 @@ absl::StatusOr<std::string> RenderTurntable(const TetMesh& mesh, const FrameSour
                                             int64_t position, const TurntableOptions& turntable,
                                             const PreviewOptions& options,
                                             const Progress& progress) {
-  CLEAVE_RETURN_IF_ERROR(CheckTurntable(turntable));
-  CLEAVE_ASSIGN_OR_RETURN(const FrameSource one, OneOf(frames, position));
-  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, one, options, Stand::kTurntable));
-  Studio& studio = *made;
+  CLEAVE_ASSIGN_OR_RETURN(const auto turning,
+                          MakeTurning(mesh, frames, position, turntable, options));
+  Studio& studio = *turning->studio;
   CLEAVE_ASSIGN_OR_RETURN(WebpAnimation film, WebpAnimation::Create(studio.width(), studio.height(),
                                                                     turntable.quality));
   for (int i = 0; i < turntable.pictures; ++i) {
@@ -206,10 +237,9 @@ absl::StatusOr<Image> RenderTurntableSheet(const TetMesh& mesh, const FrameSourc
                                            int64_t position, const TurntableOptions& turntable,
                                            const PreviewOptions& options,
                                            const Progress& progress) {
-  CLEAVE_RETURN_IF_ERROR(CheckTurntable(turntable));
-  CLEAVE_ASSIGN_OR_RETURN(const FrameSource one, OneOf(frames, position));
-  CLEAVE_ASSIGN_OR_RETURN(const auto made, Studio::Create(mesh, one, options, Stand::kTurntable));
-  Studio& studio = *made;
+  CLEAVE_ASSIGN_OR_RETURN(const auto turning,
+                          MakeTurning(mesh, frames, position, turntable, options));
+  Studio& studio = *turning->studio;
   return ComposeSheet(
       studio, turntable.tiles, 0, options,
       [&](int i) { return studio.DrawTurned(0, Angle(i, turntable.tiles)); }, progress);

@@ -15,6 +15,7 @@
 #include "client/io/preview/render.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -35,6 +36,9 @@ struct PreviewOptions {
   // Alpha of impurities, a finite number a node, for ColorBy::kImpurity.
   std::vector<double> node_potencies;
   std::vector<Prop> props;  // colliders, in grey
+  // Drawn in place of the body's surface, where it is given (embedded_mesh.h); CheckRenderMesh
+  // holds.
+  const RenderMesh* render_mesh = nullptr;
   CameraOptions camera;
   std::string title;  // of the picture or sheet; may be empty
 };

@@ -106,7 +106,8 @@ Studio::Studio(Renderer renderer, const TetMesh& mesh, const FrameSource& frames
       options_(options),
       sequence_(mesh, {.strains = options.color_by == ColorBy::kStrain,
                        .damages = options.color_by == ColorBy::kDamage,
-                       .node_potencies = options.node_potencies}) {}
+                       .node_potencies = options.node_potencies,
+                       .render_mesh = options.render_mesh}) {}
 
 absl::StatusOr<std::unique_ptr<Studio>> Studio::Create(const TetMesh& mesh,
                                                        const FrameSource& frames,
@@ -121,7 +122,20 @@ absl::StatusOr<std::unique_ptr<Studio>> Studio::Create(const TetMesh& mesh,
 
 double Studio::LetterHeight() const { return std::clamp(options_.width / 70.0, 7.5, 28.0); }
 
+absl::Status Studio::FollowTo(int64_t position) {
+  const auto pass_by = [&](const Frame& frame) { return sequence_.PassBy(frame); };
+  for (; followed_ <= position; ++followed_) {
+    if (frames_.pass_by) CLEAVE_RETURN_IF_ERROR(frames_.pass_by(followed_, pass_by));
+    if (followed_ == position) continue;  // Draw advances to it
+    CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(followed_));
+    CLEAVE_RETURN_IF_ERROR(pass_by(frame));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
+  // Colours of pieces follow from all frames; nothing else in a picture does.
+  if (options_.color_by == ColorBy::kPiece) CLEAVE_RETURN_IF_ERROR(FollowTo(position));
   CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
   CLEAVE_RETURN_IF_ERROR(sequence_.Advance(frame));
   CLEAVE_ASSIGN_OR_RETURN(
@@ -148,9 +162,10 @@ void Studio::DrawHead(Image& image) const {
   const double size = LetterHeight();
   const double margin = 1.3 * size;
   const TextStyle bold{.height = 1.15 * size, .pen = 0.18};
-  DrawText(options_.title, margin, margin + size, bold, image);
+  const std::string shown = Shortened(options_.title, options_.width - 2 * margin, bold);
+  DrawText(shown, margin, margin + size, bold, image);
   const double width = LegendWidth(legend_, 0.85 * size);
-  const double title = options_.title.empty() ? 0 : TextWidth(options_.title, bold) + margin;
+  const double title = shown.empty() ? 0 : TextWidth(shown, bold) + margin;
   double baseline = margin + size;
   if (title + width + 2 * margin > options_.width) baseline += 2.2 * size;
   DrawLegend(legend_, options_.width - margin - width, baseline, 0.85 * size, image);

@@ -50,6 +50,8 @@ class Studio {
          const PreviewOptions& options);
   absl::Status Prepare(Stand stand);
   absl::StatusOr<Image> Draw(int64_t position, const Camera& camera);
+  // Takes note of all frames before `position`.
+  absl::Status FollowTo(int64_t position);
   void AddSwatches(const std::map<int32_t, RegionLook>& looks);
   absl::Status ChooseStrainLimit();
 
@@ -63,7 +65,8 @@ class Studio {
   RenderStyle style_;
   Legend legend_;
   int height_ = 0;
-  double step_ = 0;  // s, between the frames looked at
+  int64_t followed_ = 0;  // frames that the sequence has taken note of
+  double step_ = 0;       // s, between the frames looked at
 };
 
 }  // namespace cleave

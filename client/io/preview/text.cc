@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/io/preview/glyphs.h"
 
 namespace cleave {
@@ -105,6 +107,18 @@ void DrawText(absl::string_view text, double left, double baseline, const TextSt
     }
     left += (width + kGap) * step;
   }
+}
+
+std::string Shortened(absl::string_view text, double width, const TextStyle& style) {
+  if (TextWidth(text, style) <= width) return std::string(text);
+  std::string best;
+  for (size_t place = 0; place < text.size();) {
+    NextGlyph(text, place);  // goes on to the next letter
+    std::string part = absl::StrCat(text.substr(0, place), "...");
+    if (TextWidth(part, style) > width) break;
+    best = std::move(part);
+  }
+  return best;
 }
 
 void FillRectangle(int left, int top, int width, int height, const Color& color, Image& image) {

@@ -1,6 +1,8 @@
 #ifndef CLEAVE_CLIENT_IO_PREVIEW_TEXT_H_
 #define CLEAVE_CLIENT_IO_PREVIEW_TEXT_H_
 
+#include <string>
+
 #include "absl/strings/string_view.h"
 #include "client/io/preview/image.h"
 #include "client/io/series/palette.h"
@@ -16,6 +18,10 @@ struct TextStyle {
 
 // Pixels from the first stroke to the last.
 double TextWidth(absl::string_view text, const TextStyle& style);
+
+// As many of the text's first letters as fit into `width` pixels with "..." after them, or all of
+// it where that fits.
+std::string Shortened(absl::string_view text, double width, const TextStyle& style);
 
 // Draws text with smooth edges, from `left` on, its baseline at `baseline` (pixels from the left
 // and the top). Printable ASCII has letters; every other code point is an empty box. What falls

@@ -9,7 +9,7 @@ namespace cleave {
 namespace {
 
 // Raised whenever the files made from the same frames change.
-constexpr int kExportVersion = 3;
+constexpr int kExportVersion = 4;
 
 template <typename T>
 void Absorb(const std::vector<T>& values, StateHash& hash) {
@@ -40,5 +40,14 @@ void DataKey::Add(const Frame& frame) {
 }
 
 std::string DataKey::Comment() const { return absl::StrFormat("cleave %016x", hash_.Digest()); }
+
+std::string RenderMeshKey(const RenderMesh* mesh) {
+  if (mesh == nullptr) return "";
+  StateHash hash;
+  Absorb(mesh->points, hash);
+  Absorb(mesh->triangles, hash);
+  Absorb(mesh->uvs, hash);
+  return absl::StrFormat(" render %d", hash.Digest());
+}
 
 }  // namespace cleave

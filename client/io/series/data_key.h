@@ -7,6 +7,7 @@
 #include "core/base/state_hash.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
+#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -25,6 +26,9 @@ class DataKey {
  private:
   StateHash hash_;
 };
+
+// What a render mesh adds to the name of a format; nothing where it is null.
+std::string RenderMeshKey(const RenderMesh* mesh);
 
 }  // namespace cleave
 

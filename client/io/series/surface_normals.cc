@@ -9,8 +9,6 @@
 namespace cleave {
 namespace {
 
-constexpr float kCreaseCosine = 0.766f;
-
 Eigen::Vector3d At(const ShownSurface& surface, int32_t point) {
   return Eigen::Map<const Eigen::Vector3d>(surface.points[static_cast<size_t>(point)].data());
 }

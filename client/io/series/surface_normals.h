@@ -9,6 +9,9 @@
 
 namespace cleave {
 
+// Of the largest angle between triangles that look as one round surface: 40 degrees.
+inline constexpr float kCreaseCosine = 0.766f;
+
 // Normals of the three corners of every triangle, of length 1. A corner takes the area-weighted
 // mean over the triangles round its point that lie on the same side of the crack and bend away by
 // less than the crease angle (40 degrees), so that round bodies look round and cuts stay sharp. A

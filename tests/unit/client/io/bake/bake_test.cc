@@ -5,6 +5,8 @@
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -143,8 +145,8 @@ class BakeTest : public ::testing::Test {
   const TetMesh mesh_ = BarMesh();
   const Incidence incidence_ = BuildIncidence(mesh_);
   const Frame last_ = BarFrame(mesh_, kFrames - 1);
-  const BakedSurface surface_ =
-      BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6), last_.broken_edges);
+  const BakedSurface surface_ = BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6),
+                                            last_.broken_edges, nullptr);
   std::vector<std::vector<Vec3>> points_;  // a frame each, as BakedMotion has them
   std::vector<std::vector<Vec3>> velocities_;
   const TemporaryDirectory directory_;
@@ -265,6 +267,46 @@ TEST_F(BakeTest, GlbIsAMorphTargetAFrameAndAPrimitiveAMaterial) {
   }
   EXPECT_THAT(materials, ::testing::ElementsAre("outside_3", "inside_3", "outside_crust"));
   EXPECT_EQ(triangles, surface_.topology.triangles.size());
+}
+
+TEST_F(BakeTest, GlbHasNormalsThatTurnWithTheSurfaceInEveryFrame) {
+  Write(BakeFormat::kGlb);
+  const Gltf gltf = ParseGlb(Bytes("bar.glb"));
+  const Json& primitives = Get(Get(Get(gltf.json, "meshes"), size_t{0}), "primitives");
+  double largest_turn = 0;
+  for (const Json& primitive : primitives.list_value().values()) {
+    const auto indices = gltf.Values(Integer(Get(primitive, "indices")));
+    const Json& attributes = Get(primitive, "attributes");
+    const auto rest = gltf.Values(Integer(Get(attributes, "POSITION")));
+    const auto normals = gltf.Values(Integer(Get(attributes, "NORMAL")));
+    for (size_t i = 0; i < kFrames; ++i) {
+      const Json& target = Get(Get(primitive, "targets"), i);
+      const auto moved = gltf.Values(Integer(Get(target, "POSITION")));
+      const auto turns = gltf.Values(Integer(Get(target, "NORMAL")));
+      const auto at = [](const std::vector<double>& base, const std::vector<double>& more,
+                         double vertex) {
+        const auto v = 3 * static_cast<size_t>(vertex);
+        return Eigen::Vector3d(base[v] + more[v], base[v + 1] + more[v + 1],
+                               base[v + 2] + more[v + 2]);
+      };
+      for (size_t t = 0; t < indices.size(); t += 3) {
+        const Eigen::Vector3d origin = at(rest, moved, indices[t]);
+        const Eigen::Vector3d face = (at(rest, moved, indices[t + 1]) - origin)
+                                         .cross(at(rest, moved, indices[t + 2]) - origin)
+                                         .normalized();
+        for (size_t k = 0; k < 3; ++k) {
+          const Eigen::Vector3d normal = at(normals, turns, indices[t + k]);
+          ASSERT_NEAR(normal.norm(), 1, 1e-5);
+          // Within about the crease angle of every face that it shades.
+          ASSERT_GT(normal.dot(face), 0.7);
+          for (size_t axis = 0; axis < 3; ++axis)
+            largest_turn = std::max(
+                largest_turn, std::abs(turns[3 * static_cast<size_t>(indices[t + k]) + axis]));
+        }
+      }
+    }
+  }
+  EXPECT_GT(largest_turn, 0.1);  // the bar bends
 }
 
 TEST_F(BakeTest, GlbPlaysFrameAfterFrameWithTheScenesUpAsY) {

@@ -38,8 +38,8 @@ class BakedSurfaceTest : public ::testing::Test {
   const TetMesh mesh_ = BarMesh();
   const Incidence incidence_ = BuildIncidence(mesh_);
   const Frame last_ = BarFrame(mesh_, 5);
-  const BakedSurface surface_ =
-      BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6), last_.broken_edges);
+  const BakedSurface surface_ = BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6),
+                                            last_.broken_edges, nullptr);
   BakedMotion motion_{mesh_, incidence_, surface_, last_.broken_edges};
 };
 
@@ -130,6 +130,60 @@ TEST_F(BakedSurfaceTest, VelocitiesAreThoseOfTheSideAlsoInTheFrameOfTheBreak) {
     if (surface_.topology.points[i].rest[0] < 1.25) continue;  // away from the crack
     const double expected = 0.2 * surface_.topology.points[i].rest[0] + 2;
     EXPECT_NEAR(motion_.velocities()[i][0], expected, 1e-9);
+  }
+}
+
+TEST_F(BakedSurfaceTest, ARenderMeshIsSplitOnceAndOpensWhereTheBodyCracks) {
+  const Faces faces = BuildFaces(mesh_);
+  const SurfaceTopology own = ExtractSurface(mesh_, incidence_, faces, {}, SurfaceOptions{});
+  RenderMesh render;
+  for (const SurfacePoint& point : own.points) render.points.push_back(point.rest);
+  render.triangles = own.triangles;
+  for (const auto& triangle : own.triangles) {
+    CornerUvs uvs{};
+    for (size_t k = 0; k < 3; ++k)
+      uvs[k][0] = static_cast<float>(7 * render.points[static_cast<size_t>(triangle[k])][0]);
+    render.uvs.push_back(uvs);
+  }
+  const BakedSurface baked = BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6),
+                                         last_.broken_edges, &render);
+  EXPECT_EQ(baked.open_faces, 0);
+  EXPECT_EQ(CountOpenEdges(baked.topology.triangles), 0);
+  EXPECT_EQ(std::set<int32_t>(baked.point_pieces.begin(), baked.point_pieces.end()),
+            (std::set<int32_t>{0, 1}));
+  // Texture is the render mesh's outside, and that of the rest shape inside.
+  for (size_t i = 0; i < baked.topology.triangles.size(); ++i) {
+    const auto point = static_cast<size_t>(baked.topology.triangles[i][0]);
+    const double x = baked.topology.points[point].rest[0];
+    if (baked.topology.inside[i] == 0) {
+      EXPECT_NEAR(baked.UvAt(i, 0)[0], 7 * x, 1e-5);
+    } else {
+      EXPECT_LE(baked.UvAt(i, 0)[0], 2);
+    }
+  }
+  BakedMotion motion(mesh_, incidence_, baked, last_.broken_edges);
+  std::map<Vec3, std::vector<size_t>> copies;
+  for (size_t i = 0; i < baked.topology.points.size(); ++i)
+    copies[baked.topology.points[i].rest].push_back(i);
+  for (const int64_t position : {0, 1, 3, 5}) {
+    ASSERT_TRUE(motion.Advance(BarFrame(mesh_, position)).ok());
+    size_t open = 0;
+    size_t pairs = 0;
+    for (const auto& [place, ids] : copies) {
+      for (size_t k = 1; k < ids.size(); ++k) {
+        // Points of other kinds may lie there too.
+        if (baked.point_pieces[ids[k]] == baked.point_pieces[ids[0]]) continue;
+        ++pairs;
+        open += motion.points()[ids[k]] != motion.points()[ids[0]] ? 1 : 0;
+      }
+    }
+    ASSERT_GT(pairs, 20u);
+    if (position < 2) EXPECT_EQ(open, 0u) << position;
+    if (position == 3) {  // cracked from below, and in one piece
+      EXPECT_GT(open, 0u);
+      EXPECT_LT(open, pairs);
+    }
+    if (position == 5) EXPECT_EQ(open, pairs);
   }
 }
 

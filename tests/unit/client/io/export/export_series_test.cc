@@ -250,6 +250,10 @@ TEST_F(ExportSeriesTest, ARenderMeshIsWrittenWithItsTextureCoordinatesAndInsideF
   const auto vtu = WriteVtuSeries(mesh, FlyingTip(mesh), VtuContent::kSurface, options_, {});
   ASSERT_TRUE(vtu.ok()) << vtu.status();
   EXPECT_EQ(vtu->written, 5);
+  EXPECT_THAT(ReadWhole("run_000004.vtu"), HasSubstr("Name=\"id\""));
+  EXPECT_THAT(ReadWhole("run_000004.vtu"), HasSubstr("Name=\"source\""));
+  ASSERT_TRUE(WritePlySeries(mesh, FlyingTip(mesh), options_, {}).ok());
+  EXPECT_THAT(ReadWhole("run_000004.ply"), HasSubstr("property list uchar float texcoord\n"));
 }
 
 TEST_F(ExportSeriesTest, BadFramesAreAStatusAndWhatWasWrittenStays) {

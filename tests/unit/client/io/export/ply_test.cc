@@ -74,6 +74,30 @@ TEST(Ply, CarriesWhatIsKnownOfThePoints) {
   EXPECT_TRUE(reader.Finish("faces").ok());
 }
 
+TEST(Ply, FacesHaveTheirSourceAndTexture) {
+  ShownSurface surface = TwoTriangles();
+  surface.sources = {41, -1};
+  surface.uvs = {CornerUvs{{{0, 1}, {2, 3}, {4, 5}}}, CornerUvs{}};
+  const auto bytes = EncodePly(surface, "key");
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  const std::string end =
+      "property uchar inside\nproperty int source\nproperty list uchar float "
+      "texcoord\nend_header\n";
+  ASSERT_THAT(*bytes, HasSubstr(end));
+  ByteReader reader(absl::string_view(*bytes).substr(bytes->find(end) + end.size()));
+  reader.GetBytes(6 * 15);
+  for (const int32_t face : {0, 1}) {
+    reader.GetBytes(22);
+    EXPECT_EQ(reader.Get<int32_t>(), face == 0 ? 41 : -1);
+    EXPECT_EQ(reader.Get<uint8_t>(), 6);
+    for (int i = 0; i < 6; ++i)
+      EXPECT_EQ(reader.Get<float>(), face == 0 ? static_cast<float>(i) : 0);
+  }
+  EXPECT_TRUE(reader.Finish("faces").ok());
+  surface.sources[0] = int64_t{1} << 31;
+  EXPECT_THAT(std::string(EncodePly(surface, "key").status().message()), HasSubstr("sources[0]"));
+}
+
 TEST(Ply, BadSurfacesAreRefusedByName) {
   ShownSurface surface = TwoTriangles();
   surface.points[4][1] = std::numeric_limits<double>::quiet_NaN();

@@ -293,5 +293,46 @@ TEST(ChooseFrames, FollowsTheBreakAndKeepsBothEnds) {
   EXPECT_THAT(ChooseFrames(survey, 1), ElementsAre(100));
 }
 
+TEST(Preview, PiecesHaveTheColoursThatAllFramesGiveThem) {
+  // Little of the bar breaks off in frame 1, half of it in frame 2 off the other end: what
+  // has its name from both frames has another where the first is left out.
+  const TetMesh mesh = Bar();
+  const Incidence incidence = BuildIncidence(mesh);
+  const auto frame_of = [&](int64_t position) {
+    Frame frame;
+    frame.frame = position;
+    frame.time = 0.01 * static_cast<double>(position);
+    frame.positions = mesh.rest_positions;
+    const auto part = [&](int32_t node) {
+      const double x = mesh.rest_positions[static_cast<size_t>(node)][0];
+      return (position >= 1 && x < 0.075 ? 1 : 0) + (position >= 2 && x > 0.21 ? 2 : 0);
+    };
+    for (size_t edge = 0; edge < incidence.edges.size(); ++edge) {
+      if (part(incidence.edges[edge][0]) != part(incidence.edges[edge][1]))
+        frame.broken_edges.push_back(static_cast<int32_t>(edge));
+    }
+    return frame;
+  };
+  FrameSource all;
+  all.count = 3;
+  all.read = [&](int64_t position) -> absl::StatusOr<Frame> { return frame_of(position); };
+  FrameSource ends;
+  ends.count = 2;
+  ends.read = [&](int64_t position) -> absl::StatusOr<Frame> { return frame_of(2 * position); };
+  PreviewOptions options = Small();
+  options.color_by = ColorBy::kPiece;
+  const auto expected = RenderStill(mesh, all, 2, options);
+  ASSERT_TRUE(expected.ok()) << expected.status();
+  const auto without = RenderStill(mesh, ends, 1, options);
+  ASSERT_TRUE(without.ok()) << without.status();
+  EXPECT_NE(without->rgb, expected->rgb);
+  ends.pass_by = [&](int64_t position, const FrameSource::Visit& visit) {
+    return position == 1 ? visit(frame_of(1)) : absl::OkStatus();
+  };
+  const auto with = RenderStill(mesh, ends, 1, options);
+  ASSERT_TRUE(with.ok()) << with.status();
+  EXPECT_EQ(with->rgb, expected->rgb);
+}
+
 }  // namespace
 }  // namespace cleave

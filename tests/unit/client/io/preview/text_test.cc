@@ -85,5 +85,17 @@ TEST(Legend, ShowsItsSwatchesAndItsMap) {
   EXPECT_TRUE(last);
 }
 
+TEST(Text, IsShortenedToWhatFits) {
+  const TextStyle style{.height = 12};
+  const std::string text = "a bar of two materials that is pulled";
+  EXPECT_EQ(Shortened(text, TextWidth(text, style), style), text);
+  const std::string cut = Shortened(text, 150, style);
+  EXPECT_LE(TextWidth(cut, style), 150);
+  EXPECT_GT(TextWidth(cut, style), 120);
+  EXPECT_EQ(cut.substr(cut.size() - 3), "...");
+  EXPECT_EQ(text.substr(0, cut.size() - 3), cut.substr(0, cut.size() - 3));
+  EXPECT_EQ(Shortened(text, 2, style), "");
+}
+
 }  // namespace
 }  // namespace cleave
