@@ -8,6 +8,11 @@
 
 #include "client/cpp/mesh_transfer.h"
 #include "client/io/mesh/mesh_file.h"
+#include "client/io/surface/surface_file.h"
+#include "core/mesh/incidence.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/quality.h"
+#include "core/mesh/surface_mesh.h"
 #include "tests/integration/test_server.h"
 
 namespace cleave {
@@ -133,6 +138,37 @@ TEST(RealMeshes, AMeshBeyondTheMessageLimitStreamsThroughTheGateway) {
   ASSERT_GT(mesh->tet_count() * 16, kMessageLimit);
   const v1::Session session = RunOn(*client, *mesh, "spot", /*stretch=*/0.001, /*frames=*/3);
   EXPECT_EQ(session.head_frame(), 3);
+}
+
+// Figurines and food that artists modelled, open at places: bodies of them come apart.
+TEST(RealMeshes, SurfacesBecomeBodiesThatBreak) {
+  TestServer server;
+  const std::unique_ptr<Client> client = server.Connect();
+  for (const auto& [name, cell_size] : std::vector<std::pair<std::string, double>>{
+           {"koala_low_resolution", 0.35}, {"pizza", 0.016}, {"spot_low_resolution", 0.15}}) {
+    SCOPED_TRACE(name);
+    const auto surface = ReadSurfaceFile(PathOf("surface/" + name + ".obj"));
+    ASSERT_TRUE(surface.ok()) << surface.status();
+    for (const MeshLayout layout : {MeshLayout::kJitteredLattice, MeshLayout::kUnstructured}) {
+      MeshResolution resolution;
+      resolution.cell_size = cell_size;
+      resolution.layout = layout;
+      auto body = MeshSurface(surface->vertices, surface->triangles, resolution);
+      ASSERT_TRUE(body.ok()) << body.status();
+      const Faults faults = CheckAndOrientMesh(body->mesh);
+      EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+      EXPECT_EQ(faults.warning_count(), 0);
+      const MeshReport report = ReportMesh(body->mesh, BuildIncidence(body->mesh));
+      EXPECT_GT(report.min_dihedral, 0.1);
+      EXPECT_NEAR(report.volume / body->surface_volume, 1, 0.2);
+      if (name == "pizza") break;  // large enough as it is
+      if (layout != MeshLayout::kUnstructured) continue;
+      std::string id = name;
+      std::replace(id.begin(), id.end(), '_', '-');
+      const v1::Session session = RunOn(*client, body->mesh, id, 0.3, 3);
+      EXPECT_GT(session.progress().broken_edges(), 0);
+    }
+  }
 }
 
 }  // namespace
