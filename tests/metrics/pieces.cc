@@ -63,6 +63,34 @@ BandShare ShareInBand(const Incidence& incidence, std::span<const int32_t> broke
   return share;
 }
 
+double JaccardWithin(const TetMesh& mesh, const Incidence& incidence, std::span<const int32_t> a,
+                     std::span<const int32_t> b, double reach) {
+  if (a.empty() && b.empty()) return 1;
+  const auto middles = [&](std::span<const int32_t> edges) {
+    std::vector<Vec3> found;
+    for (const int32_t edge : edges) {
+      const auto& [p, q] = incidence.edges[static_cast<size_t>(edge)];
+      Vec3 middle{0, 0, 0};
+      for (size_t axis = 0; axis < 3; ++axis)
+        middle[axis] = (mesh.rest_positions[static_cast<size_t>(p)][axis] +
+                        mesh.rest_positions[static_cast<size_t>(q)][axis]) /
+                       2;
+      found.push_back(middle);
+    }
+    return found;
+  };
+  const std::vector<Vec3> of_a = middles(a), of_b = middles(b);
+  const auto near = [reach](const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+    return std::count_if(from.begin(), from.end(), [&](const Vec3& p) {
+      return std::any_of(to.begin(), to.end(), [&](const Vec3& q) {
+        return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) <= reach;
+      });
+    });
+  };
+  return static_cast<double>(near(of_a, of_b) + near(of_b, of_a)) /
+         static_cast<double>(a.size() + b.size());
+}
+
 int64_t FirstFracture(std::span<const Frame> frames, int64_t edge_count, double share) {
   for (size_t i = 0; i < frames.size(); ++i) {
     if (static_cast<double>(frames[i].broken_edges.size()) >

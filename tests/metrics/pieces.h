@@ -37,6 +37,12 @@ struct BandShare {
 BandShare ShareInBand(const Incidence& incidence, std::span<const int32_t> broken_edges,
                       std::span<const uint8_t> in_map);
 
+// Of the edges broken in `a` and in `b`, each list counted by itself, the share whose middle at
+// rest lies within `reach` (m) of that of one broken in the other: a Jaccard index of cracks rather
+// than of ids. 1 for two empty lists.
+double JaccardWithin(const TetMesh& mesh, const Incidence& incidence, std::span<const int32_t> a,
+                     std::span<const int32_t> b, double reach);
+
 // Frames of a run are positions in it, [0] at rest. -1: it never came to that.
 
 // First frame with more than `share` of the edges broken.

@@ -10,12 +10,20 @@ namespace cleave {
 // The paper's trio: a slab of 1 x 0.5 x 0.05 m, hinged at one end and pulled at the other.
 // Variants: "iso"; "aniso", with fibres at 35 degrees to the pull; "impure", isotropic with a
 // degraded band and a row of degraded pockets; "shuffled", the same potencies dealt out to other
-// nodes; "turned", fibres at 125 degrees.
+// nodes; "turned", fibres at 125 degrees; "projected", isotropic with the edge-projected
+// reformulation, and "projected-coarse", with cells twice as long.
 absl::StatusOr<Demonstration> MakeSlabTrio(const Setting& setting);
 
 // center_from_pulled and trace_thickness as shares of the length, trace_angle to the direction of
 // 35 degrees, strain_to_crack: from the largest strain before the first fracture to the nearest
-// edge of it, in cells.
+// edge of it, in cells. And seconds a Newton iteration, by stage: a body that breaks in more passes
+// needs more of them, whatever each costs.
+//
+// Of projected and turned ones, against the isotropic slab of the same mesh with uniform weakening:
+// common_edges, the edges broken in both, of those broken in either; common_crack, the share of the
+// broken ones with a broken one of the other within a cell of full size. Two cracks half a cell
+// apart, which nobody can tell apart, have no edge in common, and so have two that approach each
+// other under refinement: criteria go by the latter.
 Metrics MeasureSlabTrio(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
 

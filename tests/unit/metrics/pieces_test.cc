@@ -41,6 +41,23 @@ class PiecesTest : public ::testing::Test {
   }
 };
 
+TEST_F(PiecesTest, CracksAreTheSameWithinAReach) {
+  // Middles of edges along x that a cut at 2.5 breaks lie at 2.5, those of one at 3.5 a metre on.
+  const std::vector<int32_t> here = Cut(2.5), there = Cut(3.5);
+  const auto same = [&](const std::vector<int32_t>& a, const std::vector<int32_t>& b,
+                        double reach) { return JaccardWithin(mesh_, incidence_, a, b, reach); };
+  EXPECT_EQ(same({}, {}, 0.1), 1);
+  EXPECT_EQ(same(here, {}, 10), 0);
+  EXPECT_EQ(same(here, here, 0), 1);
+  EXPECT_EQ(same(here, there, 0.9), 0);
+  EXPECT_EQ(same(here, there, 1.01), 1);
+  std::vector<int32_t> both = here;
+  both.insert(both.end(), there.begin(), there.end());
+  const auto h = static_cast<double>(here.size()), t = static_cast<double>(there.size());
+  EXPECT_DOUBLE_EQ(same(both, here, 0.1), 2 * h / (2 * h + t));
+  EXPECT_EQ(same(both, here, 0.1), same(here, both, 0.1));
+}
+
 TEST_F(PiecesTest, PiecesAreWhatUnbrokenEdgesJoin) {
   const Pieces whole = PiecesOf(mesh_, incidence_, {});
   EXPECT_EQ(whole.count, 1);
