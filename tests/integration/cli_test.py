@@ -466,7 +466,7 @@ class EmbeddedRuns(CliTest):
         code, _, errors = cleave("export", out, "--format", "vtu-volume", "--render-mesh", mesh)
         self.assertEqual(code, 3)
         self.assertIn("--render-mesh: goes with --format", errors)
-        mesh.write_text("v 0 0 0\nv .4 0 0\nv 0 .1 0\nv 0 0 .1\nvt 0 0\nvt 1 0\nvt 0 .625\n"
+        mesh.write_text("v 0 0 0\nv 0.4 0 0\nv 0 0.1 0\nv 0 0 0.1\nvt 0 0\nvt 1 0\nvt 0 0.625\n"
                         "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/2 3/3\n")
         code, output, errors = cleave("export", out, "--format", "bake-pc2", "--render-mesh", mesh)
         self.assertEqual(code, 0, errors)
