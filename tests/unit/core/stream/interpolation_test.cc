@@ -192,7 +192,7 @@ TEST_P(Interpolation, SeekingEqualsDecodingStraightAndResumingEqualsNoBreak) {
 TEST_P(Interpolation, BytesAreTheSameForAnyNumberOfThreads) {
   const Body body = LatticeBody(40, 16, 16);
   std::vector<std::string> expected;
-  for (const int threads : {1, 2}) {
+  for (const int threads : {1, 2, 8}) {
     tbb::task_arena arena(threads);
     arena.execute([&] {
       StreamParameters parameters = With(body, 1e-4, 6);
