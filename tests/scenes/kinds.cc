@@ -8,6 +8,7 @@
 #include "tests/scenes/drawn_slab.h"
 #include "tests/scenes/ductile_bar.h"
 #include "tests/scenes/fibre_bar.h"
+#include "tests/scenes/figure.h"
 #include "tests/scenes/locality.h"
 #include "tests/scenes/meat_loaf.h"
 #include "tests/scenes/noise_models.h"
@@ -93,6 +94,13 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MakeStruckColumn,
        MeasureStruckColumn,
        StruckColumnCriteria()},
+      {"figure",
+       "A figure, struck at the arm with the ring",
+       "Fig. 11",
+       {"graph", "off", "static", "uncorrelated", "shuffled"},
+       MakeFigure,
+       MeasureFigure,
+       FigureCriteria()},
       {"pizza",
        "A pizza, a slice pulled out",
        "Figs. 1 and 6",

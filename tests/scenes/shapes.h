@@ -1,6 +1,8 @@
 #ifndef CLEAVE_TESTS_SCENES_SHAPES_H_
 #define CLEAVE_TESTS_SCENES_SHAPES_H_
 
+#include <span>
+
 #include "absl/status/statusor.h"
 #include "core/base/vec3.h"
 #include "core/mesh/procedural_shapes.h"
@@ -32,6 +34,16 @@ absl::StatusOr<TetMesh> Branch(const BranchShape& shape, const MeshResolution& r
 
 // A column along z from the origin, 1 m high and 0.1 m in radius, with a base and a capital.
 absl::StatusOr<TetMesh> Column(const MeshResolution& resolution);
+
+// A cylinder with round ends, all points within `radius` (m) of a segment.
+struct Capsule {
+  Vec3 from{0, 0, 0};  // m
+  Vec3 to{0, 0, 0};    // m
+  double radius = 0;   // m
+};
+// All that is in any of the capsules. Precondition: at least one.
+absl::StatusOr<TetMesh> Capsules(std::span<const Capsule> capsules,
+                                 const MeshResolution& resolution);
 
 }  // namespace cleave
 
