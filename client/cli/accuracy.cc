@@ -23,7 +23,7 @@ void AddAccuracyOptions(CLI::App& verb, AccuracyOptions& options, const std::str
       verb.add_option("--rung", options.rung_name,
                       absl::StrCat("Accuracy ", whose,
                                    ": preview (errors up to 1e-3 of the body's diagonal), standard "
-                                   "(1e-4), fine (1e-5). Default: ",
+                                   "(1e-4), fine (1e-5), lossless. Default: ",
                                    without))
           ->check(CLI::IsMember(names))
           ->type_name("RUNG");

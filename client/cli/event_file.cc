@@ -42,6 +42,12 @@ void AddPart(const v1::Piece& part, JsonLine& line) {
 
 std::string EventLines(const v1::FrameEvents& events) {
   std::string lines;
+  for (const v1::Piece& piece : events.pieces()) {
+    JsonLine line;
+    line.Add("frame", events.frame()).Add("event", "piece").Add("piece", int64_t{piece.piece()});
+    AddPart(piece, line);
+    lines += line.Str() + "\n";
+  }
   for (const v1::EdgeBreak& broken : events.edge_breaks()) {
     JsonLine line = Begin(events, "edge_break", broken.place());
     line.Add("edge", int64_t{broken.edge()})

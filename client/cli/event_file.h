@@ -12,8 +12,9 @@
 
 namespace cleave {
 
-// What broke in a frame, a line of JSON an event, each starting with {"frame":N: first the edges,
-// then the pieces that split, each followed by what came off it. Empty for a frame without events.
+// What broke in a frame, a line of JSON an event, each starting with {"frame":N: first the pieces
+// there were before, where they are told, then the edges, then the pieces that split, each followed
+// by what came off it. Empty for a frame without events.
 std::string EventLines(const v1::FrameEvents& events);
 
 // events.jsonl beside a recording: the lines of all its frames, in order. Not thread-safe.

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "core/mesh/incidence.h"
+
 namespace cleave {
 namespace {
 
@@ -62,6 +64,24 @@ FrameEvents MakeFrameEvents(std::vector<EdgeBreakEvent> edge_breaks,
     events.splits.push_back(std::move(event));
   }
   return events;
+}
+
+std::vector<PiecePart> WholePieces(const TetMesh& mesh) {
+  const Incidence incidence = BuildIncidence(mesh);
+  const NamedPieces pieces(mesh, incidence);
+  std::vector<PiecePart> parts(static_cast<size_t>(pieces.count()));
+  const std::vector<int32_t> first_nodes = pieces.FirstNodes();
+  for (int32_t piece = 0; piece < pieces.count(); ++piece) {
+    parts[static_cast<size_t>(piece)] = {.piece = piece,
+                                         .first_node = first_nodes[static_cast<size_t>(piece)],
+                                         .node_count = 0,
+                                         .volume = pieces.volume(piece)};
+  }
+  for (int32_t node = 0; node < mesh.node_count(); ++node) {
+    const int32_t piece = pieces.piece_of(node);
+    if (piece >= 0) ++parts[static_cast<size_t>(piece)].node_count;
+  }
+  return parts;
 }
 
 }  // namespace cleave

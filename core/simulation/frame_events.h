@@ -8,6 +8,7 @@
 
 #include "core/base/vec3.h"
 #include "core/damage/named_pieces.h"
+#include "core/mesh/tet_mesh.h"
 
 namespace cleave {
 
@@ -52,6 +53,10 @@ struct FrameEvents {
 FrameEvents MakeFrameEvents(std::vector<EdgeBreakEvent> edge_breaks,
                             std::span<const PieceSplit> splits, const NamedPieces& pieces,
                             std::span<const int32_t> to_node);
+
+// The pieces that a mesh is made of while no edge is broken, by ascending id: what the first splits
+// are of.
+std::vector<PiecePart> WholePieces(const TetMesh& mesh);
 
 }  // namespace cleave
 

@@ -22,6 +22,8 @@ absl::string_view RungName(Rung rung) {
       return "standard";
     case Rung::kFine:
       return "fine";
+    case Rung::kLossless:
+      return "lossless";
   }
   return "";
 }
@@ -41,6 +43,8 @@ double RungTolerance(Rung rung, double diagonal) {
       return 1e-4 * length;
     case Rung::kFine:
       return 1e-5 * length;
+    case Rung::kLossless:
+      return 0;
   }
   return 0;
 }
@@ -51,7 +55,7 @@ absl::StatusOr<RungChoice> SnapDown(double tolerance, const StreamHeader& kept) 
                                               kept.tolerance, " m at which the frames are kept"));
   for (const Rung rung : kRungs) {
     const double coarse = ToleranceOf(rung, kept);
-    if (coarse <= tolerance && coarse >= 2 * kept.tolerance)
+    if (coarse <= tolerance && coarse > kept.tolerance && coarse >= 2 * kept.tolerance)
       return RungChoice{.rung = rung, .tolerance = coarse, .as_kept = false};
   }
   RungChoice choice{.rung = std::nullopt, .tolerance = kept.tolerance, .as_kept = true};

@@ -18,11 +18,14 @@ enum class Rung : uint8_t {
   kPreview = 1,   // 1e-3
   kStandard = 2,  // 1e-4
   kFine = 3,      // 1e-5
+  kLossless = 4,  // 0: to the bit
 };
 
-inline constexpr std::array<Rung, 3> kRungs = {Rung::kPreview, Rung::kStandard, Rung::kFine};
+// From coarse to fine.
+inline constexpr std::array<Rung, 4> kRungs = {Rung::kPreview, Rung::kStandard, Rung::kFine,
+                                               Rung::kLossless};
 
-// preview, standard, fine.
+// preview, standard, fine, lossless.
 absl::string_view RungName(Rung rung);
 std::optional<Rung> ParseRung(absl::string_view name);
 

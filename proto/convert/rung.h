@@ -10,7 +10,8 @@ namespace cleave {
 
 static_assert(static_cast<int>(Rung::kPreview) == v1::RUNG_PREVIEW &&
               static_cast<int>(Rung::kStandard) == v1::RUNG_STANDARD &&
-              static_cast<int>(Rung::kFine) == v1::RUNG_FINE);
+              static_cast<int>(Rung::kFine) == v1::RUNG_FINE &&
+              static_cast<int>(Rung::kLossless) == v1::RUNG_LOSSLESS);
 
 // Nothing for RUNG_UNSPECIFIED and for what this build does not know.
 inline std::optional<Rung> RungFromMessage(v1::Rung message) {

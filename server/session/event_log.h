@@ -12,8 +12,9 @@
 
 namespace cleave {
 
-// events: what broke, a record a frame in which something did: frame, length, CRC-32C of the
-// payload, payload (FrameEvents). The record of a frame is durable before the frame is committed,
+// events: a record of frame 0 that has the pieces of the mesh (sessions of older builds have none),
+// then what broke, a record a frame in which something did: frame, length, CRC-32C of the payload,
+// payload (FrameEvents). The record of a frame is durable before the frame is committed,
 // so whoever sees a committed frame finds all of its events.
 
 // Appends records. One writer at a time (owner_lock.h). Not thread-safe.
@@ -24,7 +25,7 @@ class EventLogWriter {
   // word.
   static absl::StatusOr<EventLogWriter> Open(const std::string& path, int64_t head);
 
-  // Frame of the last record, 0 for none (frame 0 has no events).
+  // Frame of the last record, -1 for none.
   int64_t last_frame() const { return last_frame_; }
 
   // Precondition: events.frame() is after last_frame().
@@ -37,7 +38,7 @@ class EventLogWriter {
   std::string path_;
   FileDescriptor file_;
   int64_t size_ = 0;
-  int64_t last_frame_ = 0;
+  int64_t last_frame_ = -1;
 };
 
 // Reads the events of committed frames in order, while another process appends. Not thread-safe.

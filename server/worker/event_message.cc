@@ -19,6 +19,12 @@ void Put(const PiecePart& part, v1::Piece& message) {
 
 }  // namespace
 
+v1::FrameEvents WholePiecesMessage(const TetMesh& mesh) {
+  v1::FrameEvents message;
+  for (const PiecePart& part : WholePieces(mesh)) Put(part, *message.add_pieces());
+  return message;
+}
+
 v1::FrameEvents EventMessage(const FrameReport& report) {
   v1::FrameEvents message;
   message.set_frame(report.frame);

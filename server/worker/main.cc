@@ -41,7 +41,7 @@ constexpr char kUsage[] =
 Simulates the session in DIRECTORY up to its scene's frame count and exits. Started again on the
 same directory it goes on behind the last committed frame. SIGTERM and SIGINT save and exit.
 
-  --rung RUNG      encode the frames that are there more coarsely (preview, standard) instead
+  --rung RUNG      encode the frames that are there more coarsely (preview, standard, fine) instead
   --threads T      threads to use; without it what the session says, else all of the machine
   --control-fd N   take commands from this socket instead (the gateway does so)
 )";

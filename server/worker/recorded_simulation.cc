@@ -35,13 +35,14 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
                             ParseStreamHeader(recorded->log_.header_bytes()));
     parameters.predictor_id = begun.predictor_id;
     parameters.coder_id = begun.coder_id;
-  } else if (scene.output.tolerance == 0.0) {
+  } else if (scene.output.tolerance == 0.0 || inputs.rung == Rung::kLossless) {
     ChooseExact(parameters);
   } else {
     ChooseIds(recorded->rest_positions_, parameters);
   }
   CLEAVE_ASSIGN_OR_RETURN(recorded->header_,
                           MakeStreamHeader(parameters, recorded->rest_positions_));
+  if (recorded->head() < 0) recorded->whole_pieces_ = WholePiecesMessage(inputs.mesh);
   recorded->checkpoint_interval_ = scene.output.checkpoint_interval;
   CLEAVE_ASSIGN_OR_RETURN(recorded->simulation_,
                           Simulation::Create(scene, std::move(inputs.mesh), {threads}));
@@ -55,6 +56,7 @@ absl::Status RecordedSimulation::Begin() {
   }
   CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh()));
   CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
+  CLEAVE_RETURN_IF_ERROR(events_.Append(whole_pieces_));
   return log_.Append(encoder_->header_bytes(), encoded);
 }
 

@@ -72,6 +72,7 @@ class RecordedSimulation {
   EventLogWriter events_;
   std::vector<Vec3> rest_positions_;
   std::vector<std::array<int32_t, 2>> edges_;  // of the mesh, as frames number them
+  v1::FrameEvents whole_pieces_;               // where the log is empty
   StreamHeader header_;
   int64_t checkpoint_interval_ = 1;
   int64_t newest_checkpoint_ = -1;

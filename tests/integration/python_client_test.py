@@ -5,6 +5,7 @@ Usage: python_client_test.py CLEAVED STUBS_FOLDER [unittest arguments]; client/p
 
 import contextlib
 import io
+import itertools
 import pathlib
 import subprocess
 import sys
@@ -100,8 +101,16 @@ class PythonClientTest(unittest.TestCase):
             self.assertEqual(pieces, frame.fragments)
         self.assertGreater(len(told), 0)
         # From the middle, and without asking.
-        late = next(frame for frame in session.frames(20, events=True))
+        stream = session.frames(first_frame=20, events=True)
+        late = next(stream)
         self.assertEqual(late.number, 20)
+        names = {piece.piece for piece in late.events.pieces}
+        self.assertGreater(len(names), 0)
+        for frame in itertools.chain([late], stream):
+            for split in frame.events.splits:
+                self.assertIn(split.kept.piece, names)
+                names |= {separation.part.piece for separation in split.separations}
+            self.assertEqual(len(names), frame.fragments)
         self.assertIsNone(next(iter(session.frames(20))).events)
 
     def test_viewers_ask_for_the_accuracy_that_they_need(self):

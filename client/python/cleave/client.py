@@ -22,7 +22,7 @@ from google.protobuf import json_format, text_format
 
 from cleave.answers import Curve, Frame, ImpurityPreview, Mesh, Probe
 from cleave.checksums import crc32c
-from cleave.events import Events
+from cleave.events import Events, PieceNames
 from cleave.stream import FrameDecoder, split_frame
 
 try:
@@ -155,7 +155,7 @@ class Client:
         """Creates a session of a Scene message; with validate_only returns its Plan instead.
 
         `rung` is what it keeps of its frames, and so the finest that viewers can have: "preview",
-        "standard" or "fine". Without it: as scene.output.tolerance says, or standard.
+        "standard", "fine" or "lossless". Without it: as scene.output.tolerance says, or standard.
         """
         response = self._call(
             self._sessions.CreateSession,
@@ -407,13 +407,14 @@ class Session:
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
-        what broke in them. `rung` ("preview", "standard", "fine") or `tolerance` (m) is the accuracy
+        what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is the accuracy
         that will do, by default all that the session keeps; frames tell the tolerance that they
         have. With `latest` a slow reader skips to the newest key frame. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()
         decoder = None
+        pieces = PieceNames()
         attempt = 0
         while True:
             request = frame_pb2.StreamFramesRequest(
@@ -458,6 +459,7 @@ class Session:
                         known = header.epoch == decoder.epoch and header.frame <= decoder.frame
                         if not known:
                             decoder.apply(data)
+                        told = Events.of_message(broken) if events and not known else None
                         data = b""
                         attempt = 0
                         if not known and decoder.frame >= first_frame:
@@ -467,9 +469,10 @@ class Session:
                                 decoder.fragments,
                                 decoder.positions.copy(),
                                 decoder.broken_edges.copy(),
-                                Events.of_message(broken) if events else None,
+                                pieces.begin(told),
                                 given,
                             )
+                        pieces.follow(told)
                         broken.Clear()
                     elif event == "end":
                         if message.end.reason == frame_pb2.END_REASON_FAILED:
@@ -488,9 +491,9 @@ class Session:
 
 
 def _rung(name):
-    names = {None: 0, "preview": 1, "standard": 2, "fine": 3}
+    names = {None: 0, "preview": 1, "standard": 2, "fine": 3, "lossless": 4}
     if name not in names:
-        raise ValueError(f"rung: {name!r} is none of preview, standard, fine")
+        raise ValueError(f"rung: {name!r} is none of preview, standard, fine, lossless")
     return names[name]
 
 

@@ -59,6 +59,8 @@ class Events:
     positions: np.ndarray  # edges x 3, m
     energies: np.ndarray  # J
     splits: list  # of Split
+    # Of Piece: all as they were before, by id; only of the first frame of a stream that is begun.
+    pieces: list = dataclasses.field(default_factory=list)
 
     @classmethod
     def of_message(cls, message):
@@ -75,10 +77,11 @@ class Events:
                 )
                 for split in message.splits
             ],
+            [_piece(piece) for piece in message.pieces],
         )
 
     @classmethod
-    def _of_rows(cls, rows, splits):
+    def _of_rows(cls, rows, splits, pieces=()):
         columns = list(zip(*rows)) or [[]] * 7
         return cls(
             np.array(columns[0], float),
@@ -89,6 +92,7 @@ class Events:
             np.array([list(row) for row in columns[5]], float).reshape(-1, 3),
             np.array(columns[6], float),
             splits,
+            list(pieces),
         )
 
 
@@ -99,12 +103,14 @@ def read_events(path):
         path = path / "events.jsonl"
     rows = {}
     splits = {}
+    pieces = {}
     with path.open() as lines:
         for line in lines:
             event = json.loads(line)
             frame = event["frame"]
             rows.setdefault(frame, [])
             splits.setdefault(frame, [])
+            pieces.setdefault(frame, [])
             if event["event"] == "edge_break":
                 rows[frame].append(
                     tuple(event[name] for name in
@@ -112,13 +118,47 @@ def read_events(path):
                 )
                 continue
             part = Piece(event["piece"], event["first_node"], event["node_count"], event["volume"])
+            if event["event"] == "piece":
+                pieces[frame].append(part)
+                continue
             place = Place(event["time"], np.array(event["rest"]), np.array(event["position"]),
                           event["energy"])
             if event["event"] == "split":
                 splits[frame].append(Split(part, [], place))
             else:
                 splits[frame][-1].separations.append(Separation(part, place))
-    return {frame: Events._of_rows(rows[frame], splits[frame]) for frame in rows}
+    return {frame: Events._of_rows(rows[frame], splits[frame], pieces[frame]) for frame in rows}
+
+
+class PieceNames:
+    """The pieces that there are, kept up with events."""
+
+    def __init__(self):
+        self._pieces = {}
+        self._begun = False
+
+    def begin(self, events):
+        """The events, the first time with all pieces that there were before them."""
+        if events is None or events.pieces or self._begun:
+            self._begun = True
+            return events
+        self._begun = True
+        return dataclasses.replace(
+            events, pieces=[self._pieces[piece] for piece in sorted(self._pieces)]
+        )
+
+    def follow(self, events):
+        """Takes the events of the next frame; None: nothing is known of them."""
+        if events is None:
+            return
+        if events.pieces:
+            self._pieces = {piece.piece: piece for piece in events.pieces}
+        if not self._pieces:
+            return  # a session that never told of them
+        for split in events.splits:
+            self._pieces[split.kept.piece] = split.kept
+            for separation in split.separations:
+                self._pieces[separation.part.piece] = separation.part
 
 
 def _piece(message):

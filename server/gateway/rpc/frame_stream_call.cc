@@ -71,8 +71,8 @@ absl::Status FrameStreamCall::CheckRequest() const {
   if (request_.has_stop_frame() && request_.stop_frame() < 0) {
     faults.Error("stop_frame", absl::StrCat(request_.stop_frame(), " is negative"));
   }
-  if (request_.has_tolerance() && !(request_.tolerance() > 0)) {
-    faults.Error("tolerance", absl::StrCat(request_.tolerance(), " m is not above 0"));
+  if (request_.has_tolerance() && !(request_.tolerance() >= 0)) {
+    faults.Error("tolerance", absl::StrCat(request_.tolerance(), " m is below 0"));
   }
   if (request_.has_rung() && !v1::Rung_IsValid(request_.rung())) {
     faults.Error("rung", absl::StrCat(static_cast<int>(request_.rung()), " is no rung"));
@@ -113,7 +113,8 @@ absl::Status FrameStreamCall::Continue(const HostedSession::State& state) {
     SendEnd(v1::END_REASON_DELETED, "");
   } else if (going_down()) {
     SendEnd(v1::END_REASON_SHUTDOWN, "the server goes down; go on where you are when it is back");
-  } else if (events_.edge_breaks_size() > 0 || events_.splits_size() > 0) {
+  } else if (events_.pieces_size() > 0 || events_.edge_breaks_size() > 0 ||
+             events_.splits_size() > 0) {
     SendEvents();
   } else if (!frame_bytes_.empty()) {
     SendChunk(state.head_frame);
@@ -208,6 +209,7 @@ absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
   CLEAVE_ASSIGN_OR_RETURN(*start.mutable_header(), frames().ReadHeader());
   start.set_rung(RungMessage(choice_->rung));
   start.set_tolerance(choice_->tolerance);
+  tell_pieces_ = !start.resumed();
   start.set_first_frame(next_frame_);
   start.set_mesh_asset(session()->config().scene().mesh().asset());
   Send();
@@ -223,6 +225,7 @@ bool FrameStreamCall::SkipToNewestKeyframe() {
   gap.set_first_frame(next_frame_);
   gap.set_last_frame(key->frame - 1);
   next_frame_ = key->frame;
+  tell_pieces_ = true;
   Send();
   return true;
 }
@@ -236,9 +239,28 @@ absl::Status FrameStreamCall::LoadNextFrame() {
   CLEAVE_ASSIGN_OR_RETURN(frame_bytes_, frames().ReadFrame(*row));
   frame_sent_ = 0;
   if (!event_log_.has_value()) return absl::OkStatus();
-  CLEAVE_ASSIGN_OR_RETURN(std::optional<v1::FrameEvents> events, event_log_->Read(next_frame_));
-  if (events.has_value()) events_ = *std::move(events);
+  while (next_events_ < next_frame_) CLEAVE_RETURN_IF_ERROR(ReadEvents(next_events_).status());
+  const std::map<int32_t, v1::Piece> before = tell_pieces_ ? pieces_ : decltype(pieces_)();
+  CLEAVE_ASSIGN_OR_RETURN(events_, ReadEvents(next_frame_));
+  if (!std::exchange(tell_pieces_, false) || events_.pieces_size() > 0) return absl::OkStatus();
+  for (const auto& [id, piece] : before) *events_.add_pieces() = piece;
   return absl::OkStatus();
+}
+
+absl::StatusOr<v1::FrameEvents> FrameStreamCall::ReadEvents(int64_t frame) {
+  CLEAVE_ASSIGN_OR_RETURN(std::optional<v1::FrameEvents> events, event_log_->Read(frame));
+  next_events_ = frame + 1;
+  if (!events.has_value()) return v1::FrameEvents();
+  for (const v1::Piece& piece : events->pieces()) pieces_[piece.piece()] = piece;
+  // Of a session that never noted the pieces of its mesh, nothing is told rather than some.
+  if (pieces_.empty()) return *std::move(events);
+  for (const v1::PieceSplit& split : events->splits()) {
+    pieces_[split.kept().piece()] = split.kept();
+    for (const v1::Separation& part : split.separations()) {
+      pieces_[part.part().piece()] = part.part();
+    }
+  }
+  return *std::move(events);
 }
 
 // Moves the first of what is left of the frame's events into the message.
@@ -251,6 +273,8 @@ void FrameStreamCall::SendEvents() {
     for (int i = 0; i < count; ++i) to.Add()->Swap(from.Mutable(i));
     from.DeleteSubrange(0, count);
   };
+  move_some(*events_.mutable_pieces(), *sent.mutable_pieces(), kEventsPerMessage);
+  if (events_.pieces_size() > 0) return Send();
   move_some(*events_.mutable_edge_breaks(), *sent.mutable_edge_breaks(), kEventsPerMessage);
   if (events_.edge_breaks_size() == 0)
     move_some(*events_.mutable_splits(), *sent.mutable_splits(), kEventsPerMessage);

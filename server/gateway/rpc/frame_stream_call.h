@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -57,6 +58,8 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   // Nothing is due: a heartbeat now and then.
   void Rest(const HostedSession::State& state);
   void SendEvents();
+  // Reads the events of a frame, and keeps up what pieces there are.
+  absl::StatusOr<v1::FrameEvents> ReadEvents(int64_t frame);
   void SendChunk(int64_t head_frame);
   void SendEnd(v1::EndReason reason, const std::string& message);
   void Send();
@@ -77,6 +80,9 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   size_t frame_sent_ = 0;                    // bytes of it
   std::optional<EventLogReader> event_log_;  // where events were asked for
   v1::FrameEvents events_;                   // of next_frame_, yet to be sent
+  std::map<int32_t, v1::Piece> pieces_;      // after the frame before next_events_
+  int64_t next_events_ = 0;                  // first frame whose events were not read
+  bool tell_pieces_ = false;                 // before the next frame
   Executor::Clock::time_point last_write_;
   std::atomic<bool> writing_ = false;
   std::atomic<bool> cancelled_ = false;

@@ -20,7 +20,7 @@ TEST(RungsTest, ARungIsAShareOfTheDiagonal) {
   const std::vector<Vec3> rest = {{1, 2, 3}, {2, 4, 5}};
   StreamParameters parameters;
   parameters.mesh_sha256 = std::string(32, 'x');
-  for (const Rung rung : kRungs) {
+  for (const Rung rung : {Rung::kPreview, Rung::kStandard, Rung::kFine}) {
     parameters.rung = rung;
     const absl::StatusOr<StreamHeader> header = MakeStreamHeader(parameters, rest);
     ASSERT_TRUE(header.ok()) << header.status();
@@ -43,6 +43,17 @@ TEST(RungsTest, WhatIsGivenIsNeverCoarserThanAskedNorFinerThanNeeded) {
     if (!choice->as_kept)
       EXPECT_DOUBLE_EQ(ToleranceOfAnew(*choice->rung, kept) + kept.tolerance, choice->tolerance);
   }
+}
+
+TEST(RungsTest, WhatIsKeptToTheBitIsGivenSoToWhoeverWantsIt) {
+  const StreamHeader kept = KeptAt(0);
+  const absl::StatusOr<RungChoice> exact = SnapDown(0, kept);
+  ASSERT_TRUE(exact.ok());
+  EXPECT_EQ(exact->rung, Rung::kLossless);
+  EXPECT_TRUE(exact->as_kept);
+  EXPECT_TRUE(SnapDown(1e-9, kept)->as_kept);
+  EXPECT_EQ(SnapDown(Rung::kFine, kept)->rung, Rung::kFine);
+  EXPECT_EQ(ToleranceOfAnew(Rung::kFine, kept), RungTolerance(Rung::kFine, 3));
 }
 
 TEST(RungsTest, FinerThanKeptIsAnError) {
