@@ -89,7 +89,7 @@ absl::StatusOr<v1::ProbeMaterialResponse> Ask(Program& program, const Options& o
     return response;
   }
   Faults faults;
-  v1::ProbeMaterialResponse response = AnswerProbe(request, faults);
+  auto response = AnswerProbe(request, program.interrupt.stop(), faults);
   if (!faults.ok()) return input.Describe(faults.errors());
   return response;
 }

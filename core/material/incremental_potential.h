@@ -84,7 +84,7 @@ StepFlow<Law> FindStepFlow(const Double4 strain[3], const LameConstants<Double4>
                            const FlowRule<Double4>& rule, Double4 plastic_strain,
                            Int64x4 may_flow) {
   using namespace plasticity_internal;
-  const Double4 yield = rule.yield_stress + rule.hardening * plastic_strain;
+  const Double4 yield = rule.Yield(plastic_strain);
   const Double4 zero = Splat(0);
   const PrincipalState<Law> trial(strain, lame);
   StepFlow<Law> flow{may_flow, {zero, zero, zero}, zero, zero, zero, zero, trial};
@@ -156,7 +156,7 @@ StepFlow<Law> FindStepFlow(const Double4 strain[3], const LameConstants<Double4>
     y[1] += definite ? per * (c.first * residual[1] - c.mixed * residual[0]) : zero;
   }
   const Double4 viscous = viscosity * flow.strain * flow.strain;
-  const Double4 spent = (yield + 0.5 * rule.hardening * flow.strain) * flow.strain;
+  const Double4 spent = rule.Work(plastic_strain, flow.strain);
   flow.potential = spent + 0.5 * viscous;
   flow.work = spent + viscous;
   // The lower of the two: crushed laws may have a minimum that is none.
@@ -191,7 +191,7 @@ StiffnessSpectrum<Double4> FlowSpectrum(const StepFlow<Law>& flow, const Double4
     y[1] += kSecond[k] * flow.log_flow[k];
   }
   y[0] = flow.flows ? y[0] : Splat(1);
-  const Double4 yield = rule.yield_stress + rule.hardening * plastic_strain + flow.overstress;
+  const Double4 yield = rule.Yield(plastic_strain) + flow.overstress;
   const FlowCurvature c =
       CurvatureOf(tangent, y[0], y[1], yield, rule.hardening + Viscosity(lame, rule));
   const Double4 per = 1.0 / c.determinant();

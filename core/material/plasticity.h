@@ -34,6 +34,11 @@ struct FlowRule {
   T yield_stress;  // Pa, > 0
   T hardening;     // Pa per equivalent plastic strain, >= 0
   T relaxation;    // flow_rate dt: a share exp(-relaxation) of the overstress outlives the step
+
+  // Pa, at an equivalent plastic strain.
+  T Yield(T strain) const { return yield_stress + hardening * strain; }
+  // J/m^3, that slow flow by `more` from there takes.
+  T Work(T strain, T more) const { return (Yield(strain) + 0.5 * hardening * more) * more; }
 };
 
 // ln s of four tets.
@@ -169,7 +174,7 @@ template <typename Law>
 Double4 RadialShare(const LogStrain& log, const LameConstants<Double4>& lame,
                     const FlowRule<Double4>& rule, Double4 strain, Int64x4 flows,
                     double tolerance) {
-  const Double4 yield = rule.yield_stress + rule.hardening * strain;
+  const Double4 yield = rule.Yield(strain);
   // How far a share r of the deviator lies above yield: falls to below 0 at r = 0.
   const auto excess_at = [&](Double4 r) {
     const Double4 at[3] = {log.mean + r * log.deviator[0], log.mean + r * log.deviator[1],

@@ -180,8 +180,8 @@ bool MaterialPoint::Flow(const Matrix3d& g, PlasticState& plastic) const {
 
 double MaterialPoint::FlowWork(double plastic_strain) const {
   if (!plasticity_.has_value()) return 0;
-  return (plasticity_->yield_stress + 0.5 * plasticity_->hardening * plastic_strain) *
-         plastic_strain;
+  const FlowRule<double> rule{plasticity_->yield_stress, plasticity_->hardening, 0};
+  return rule.Work(0, plastic_strain);
 }
 
 }  // namespace cleave

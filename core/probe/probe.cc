@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "absl/status/status.h"
 #include "core/material/fibre_directions.h"
 #include "core/probe/edge_failure.h"
 #include "core/probe/material_point.h"
@@ -57,11 +58,12 @@ struct Failure {
   Vector3d edge;
 };
 
-// Pulls one bar until it fails.
+// Pulls one bar until it fails, or until `stop`: then what it returns is of no use.
 class PullTest {
  public:
-  PullTest(const MaterialProbe& probe, const MaterialPoint& point, const Vector3d& direction)
-      : probe_(probe), point_(point), direction_(direction), bar_(point, direction) {
+  PullTest(const MaterialProbe& probe, const MaterialPoint& point, const Vector3d& direction,
+           const StopFlag& stop)
+      : probe_(probe), point_(point), direction_(direction), stop_(stop), bar_(point, direction) {
     const Material& material = probe.material;
     strength_.tensile = material.tensile_strength.value_or(strength_.tensile);
     strength_.compressive = material.compressive_strength.value_or(strength_.compressive);
@@ -115,7 +117,7 @@ class PullTest {
     double strain =
         std::min(std::max(0.01 * weakest / curve.youngs_modulus, 1e-12), 1e-3 * largest);
     passed_.push_back(bar_.AtRest());
-    while (true) {
+    while (!stop_.requested()) {
       const std::optional<PulledBar::State> state = bar_.Pull(sign * strain, passed_.back());
       if (!state.has_value()) {
         curve.end = CurveEnd::kNoEquilibrium;
@@ -130,7 +132,7 @@ class PullTest {
 
   // The failure lies between the last state that passed and `failed`.
   void NarrowFailure(PulledBar::State failed, StressStrainCurve& curve) {
-    for (int halving = 0; halving < 100; ++halving) {
+    for (int halving = 0; halving < 100 && !stop_.requested(); ++halving) {
       const PulledBar::State& below = passed_.back();
       const double gap = std::abs(failed.strain - below.strain);
       if (gap <= 1e-13 * std::abs(failed.strain)) break;
@@ -153,7 +155,7 @@ class PullTest {
   void Sample(StressStrainCurve& curve) {
     const double end = passed_.back().strain;
     size_t near = 0;
-    for (int k = 1; k <= probe_.samples; ++k) {
+    for (int k = 1; k <= probe_.samples && !stop_.requested(); ++k) {
       const double strain = k == probe_.samples ? end : end * k / probe_.samples;
       while (near + 1 < passed_.size() && std::abs(passed_[near + 1].strain) <= std::abs(strain))
         ++near;
@@ -182,6 +184,7 @@ class PullTest {
   const MaterialProbe& probe_;
   const MaterialPoint& point_;
   const Vector3d direction_;
+  const StopFlag& stop_;
   const PulledBar bar_;
   MaterialStrength strength_;
   double failure_strain_ = std::numeric_limits<double>::infinity();
@@ -198,14 +201,17 @@ std::vector<Vec3> PullDirectionsOf(const MaterialProbe& probe, const MaterialPoi
 
 }  // namespace
 
-ProbeReport RunProbe(const MaterialProbe& probe) {
+absl::StatusOr<ProbeReport> RunProbe(const MaterialProbe& probe, const StopFlag& stop) {
   const std::vector<Vec3> fibre_directions = FibreDirectionsOf(probe);
   const MaterialPoint point(probe.material, fibre_directions);
   ProbeReport report;
-  for (const std::array<double, 9>& gradient : probe.deformation_gradients)
+  for (const std::array<double, 9>& gradient : probe.deformation_gradients) {
+    if (stop.requested()) break;
     report.points.push_back(Probed(point, gradient));
+  }
   for (const Vec3& direction : PullDirectionsOf(probe, point))
-    report.curves.push_back(PullTest(probe, point, UnitOf(direction)).Run());
+    report.curves.push_back(PullTest(probe, point, UnitOf(direction), stop).Run());
+  if (stop.requested()) return absl::CancelledError("stopped inside a probe");
   return report;
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "core/base/stop_flag.h"
 #include "core/base/vec3.h"
 #include "core/scene/material_probe.h"
 
@@ -54,8 +56,9 @@ struct ProbeReport {
 };
 
 // Evaluates a material. Precondition: ValidateProbe found no error. Takes at most about a second,
-// by the limits of a probe. Source: method note, sections 2, 5 and 11.
-ProbeReport RunProbe(const MaterialProbe& probe);
+// by the limits of a probe. Errors: Cancelled when `stop` was requested, looked for at every
+// deformation gradient and every state of a bar. Source: method note, sections 2, 5 and 11.
+absl::StatusOr<ProbeReport> RunProbe(const MaterialProbe& probe, const StopFlag& stop);
 
 }  // namespace cleave
 

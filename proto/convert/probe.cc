@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/base/status.h"
 #include "core/scene/presets.h"
 #include "proto/convert/field_reader.h"
 #include "proto/convert/scene.h"
@@ -76,7 +77,8 @@ MaterialProbe ProbeFromMessage(const v1::ProbeMaterialRequest& message, Faults& 
   return probe;
 }
 
-v1::ProbeMaterialResponse AnswerProbe(const v1::ProbeMaterialRequest& request, Faults& faults) {
+absl::StatusOr<v1::ProbeMaterialResponse> AnswerProbe(const v1::ProbeMaterialRequest& request,
+                                                      const StopFlag& stop, Faults& faults) {
   v1::ProbeMaterialResponse response;
   const MaterialProbe probe = ProbeFromMessage(request, faults);
   faults.Append("", ValidateProbe(probe));
@@ -84,7 +86,7 @@ v1::ProbeMaterialResponse AnswerProbe(const v1::ProbeMaterialRequest& request, F
   *response.mutable_material() = MessageFromMaterial(probe.material);
   for (const Fault& warning : faults.warnings())
     response.add_warnings(absl::StrCat(warning.field, ": ", warning.description));
-  const ProbeReport report = RunProbe(probe);
+  CLEAVE_ASSIGN_OR_RETURN(const ProbeReport report, RunProbe(probe, stop));
   for (const ProbedPoint& point : report.points) {
     v1::ProbedPoint* to = response.add_points();
     to->set_energy(point.energy);

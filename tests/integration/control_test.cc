@@ -220,8 +220,8 @@ TEST_F(ControlTest, AProbedMaterialAnswersTheNumbersOfTheLibrary) {
   const absl::StatusOr<v1::ProbeMaterialResponse> response = client_->ProbeMaterial(request);
   ASSERT_TRUE(response.ok()) << response.status();
   Faults faults;
-  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(*response,
-                                                                 AnswerProbe(request, faults)));
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(
+      *response, *AnswerProbe(request, {}, faults)));
   EXPECT_EQ(client_->ListMaterialPresets()->presets_size(), PresetsMessage().presets_size());
 }
 

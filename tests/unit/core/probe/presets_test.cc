@@ -33,7 +33,7 @@ TEST(MaterialPresets, BreakWhereTheirSourcesSay) {
     probe.material = FindMaterialPreset(expected.preset)->material;
     probe.pull_directions = {{1, 0, 0}};
     probe.largest_strain = 10;
-    const StressStrainCurve curve = RunProbe(probe).curves[0];
+    const StressStrainCurve curve = RunProbe(probe, StopFlag())->curves[0];
     EXPECT_NE(curve.end, CurveEnd::kLargestStrain) << expected.preset;
     EXPECT_NEAR(curve.youngs_modulus, expected.modulus, 0.02 * expected.modulus) << expected.preset;
     EXPECT_NEAR(curve.points.back().nominal_stress, expected.strength, 0.15 * expected.strength)
@@ -50,7 +50,7 @@ TEST(MaterialPresets, AreWeakerAcrossTheirFibres) {
     MaterialProbe probe;
     probe.material = FindMaterialPreset(preset)->material;
     probe.pull_directions = {{0, 1, 0}};
-    const StressStrainCurve curve = RunProbe(probe).curves[0];
+    const StressStrainCurve curve = RunProbe(probe, StopFlag())->curves[0];
     EXPECT_EQ(curve.end, CurveEnd::kTensileStrength) << preset;
     EXPECT_GT(curve.points.back().nominal_stress, least) << preset;
     EXPECT_LT(curve.points.back().nominal_stress, most) << preset;

@@ -39,7 +39,7 @@ TEST(Probe, IsAnsweredInColumns) {
   for (const double x : {0, 2, 0}) request.add_pull_directions(x);
   request.set_samples(4);
   Faults faults;
-  const v1::ProbeMaterialResponse response = AnswerProbe(request, faults);
+  const v1::ProbeMaterialResponse response = *AnswerProbe(request, {}, faults);
   ASSERT_TRUE(faults.ok()) << faults.ToStatus();
   EXPECT_EQ(response.material().name(), "glass");
   EXPECT_TRUE(response.material().preset().empty());
@@ -67,7 +67,7 @@ TEST(Probe, NamesWhatOnlyAMessageCanSayWrongly) {
   request.add_deformation_gradients(1);
   request.add_pull_directions(1);
   Faults faults;
-  const v1::ProbeMaterialResponse response = AnswerProbe(request, faults);
+  const v1::ProbeMaterialResponse response = *AnswerProbe(request, {}, faults);
   EXPECT_EQ(response.ByteSizeLong(), 0u);
   std::vector<std::string> fields;
   for (const Fault& fault : faults.errors()) fields.push_back(fault.field);
