@@ -44,13 +44,18 @@ class JsonReader {
       Report("a scene is one JSON object: { ... }");
     else if (ReadMessage(message, ""))
       scanner_.ReadEnd();
-    if (scanner_.failed()) faults_.push_back({scanner_.line(), scanner_.error()});
+    if (scanner_.failed()) AddFault(scanner_.error());
     return std::move(faults_);
   }
 
  private:
   void Report(std::string text) {
-    if (faults_.size() < kMaxSceneFaults) faults_.push_back({scanner_.line(), std::move(text)});
+    if (faults_.size() < kMaxSceneFaults) AddFault(std::move(text));
+  }
+  void AddFault(std::string text) {
+    SceneFault& fault = faults_.emplace_back();
+    fault.line = scanner_.line();
+    fault.text = std::move(text);
   }
   void Note(const std::string& path) {
     if (lines_.size() < kMaxSceneLines) lines_.emplace(path, scanner_.line());

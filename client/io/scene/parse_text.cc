@@ -116,7 +116,10 @@ class FieldWalk {
     if (lines_.size() < kMaxSceneLines) lines_.emplace(path, line);
   }
   void Report(int line, std::string text) {
-    if (faults_.size() < kMaxSceneFaults) faults_.push_back({line, std::move(text)});
+    if (faults_.size() >= kMaxSceneFaults) return;
+    SceneFault& fault = faults_.emplace_back();
+    fault.line = line;
+    fault.text = std::move(text);
   }
   void CheckValue(const Message& message, const FieldDescriptor& field, int index,
                   const std::string& path, int line) {
