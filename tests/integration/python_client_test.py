@@ -104,7 +104,7 @@ class PythonClientTest(unittest.TestCase):
         stream = session.frames(first_frame=20, events=True)
         late = next(stream)
         self.assertEqual(late.number, 20)
-        names = {piece.piece for piece in late.events.pieces}
+        names = {piece.piece for piece in late.events.all_pieces}
         self.assertGreater(len(names), 0)
         for frame in itertools.chain([late], stream):
             for split in frame.events.splits:

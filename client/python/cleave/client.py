@@ -407,8 +407,8 @@ class Session:
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
-        what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is the accuracy
-        that will do, by default all that the session keeps; frames tell the tolerance that they
+        what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is
+        the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
         have. With `latest` a slow reader skips to the newest key frame. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """

@@ -60,7 +60,7 @@ class Events:
     energies: np.ndarray  # J
     splits: list  # of Split
     # Of Piece: all as they were before, by id; only of the first frame of a stream that is begun.
-    pieces: list = dataclasses.field(default_factory=list)
+    all_pieces: list = dataclasses.field(default_factory=list)
 
     @classmethod
     def of_message(cls, message):
@@ -139,20 +139,20 @@ class PieceNames:
 
     def begin(self, events):
         """The events, the first time with all pieces that there were before them."""
-        if events is None or events.pieces or self._begun:
+        if events is None or events.all_pieces or self._begun:
             self._begun = True
             return events
         self._begun = True
         return dataclasses.replace(
-            events, pieces=[self._pieces[piece] for piece in sorted(self._pieces)]
+            events, all_pieces=[self._pieces[piece] for piece in sorted(self._pieces)]
         )
 
     def follow(self, events):
         """Takes the events of the next frame; None: nothing is known of them."""
         if events is None:
             return
-        if events.pieces:
-            self._pieces = {piece.piece: piece for piece in events.pieces}
+        if events.all_pieces:
+            self._pieces = {piece.piece: piece for piece in events.all_pieces}
         if not self._pieces:
             return  # a session that never told of them
         for split in events.splits:

@@ -31,7 +31,7 @@ MaterialProbe FibreProbe(double stiffness, double strength_ratio) {
   return probe;
 }
 
-ProbeReport Run(const MaterialProbe& probe) { return *RunProbe(probe, StopFlag()); }
+ProbeReport ReportOf(const MaterialProbe& probe) { return *RunProbe(probe, StopFlag()); }
 
 TEST(Probe, GivesUpWhereItIsAskedTo) {
   StopFlag stop;
@@ -40,7 +40,7 @@ TEST(Probe, GivesUpWhereItIsAskedTo) {
 }
 
 TEST(Probe, EndsACurveWhereNominalStressReachesTheTensileStrength) {
-  const ProbeReport report = Run(ProbeOf(2e5));
+  const ProbeReport report = ReportOf(ProbeOf(2e5));
   ASSERT_EQ(report.curves.size(), 1u);
   const StressStrainCurve& curve = report.curves[0];
   EXPECT_EQ(curve.direction, (Vec3{1, 0, 0}));
@@ -62,7 +62,7 @@ TEST(Probe, EndsACurveWhereNominalStressReachesTheTensileStrength) {
 
 TEST(Probe, FindsFailureWhereverStrengthLies) {
   for (const double strength : {1e-6, 1.0, 1e3, 1e5, 6e5}) {
-    const StressStrainCurve curve = Run(ProbeOf(strength)).curves[0];
+    const StressStrainCurve curve = ReportOf(ProbeOf(strength)).curves[0];
     EXPECT_EQ(curve.end, CurveEnd::kTensileStrength) << strength;
     EXPECT_NEAR(curve.points.back().nominal_stress, strength, 1e-9 * strength);
   }
@@ -73,25 +73,25 @@ TEST(Probe, LetsGoOfWhatDoesNotBreak) {
     MaterialProbe probe = ProbeOf(strength);
     probe.largest_strain = 0.25;
     probe.samples = 10;
-    const StressStrainCurve curve = Run(probe).curves[0];
+    const StressStrainCurve curve = ReportOf(probe).curves[0];
     EXPECT_EQ(curve.end, CurveEnd::kLargestStrain);
     EXPECT_EQ(curve.points.back().strain, 0.25);
   }
 }
 
 TEST(Probe, PullsTenTimesFartherWhatCanBreak) {
-  EXPECT_EQ(Run(ProbeOf(1e9)).curves[0].points.back().strain, 10);
-  EXPECT_EQ(Run(ProbeOf(std::nullopt)).curves[0].points.back().strain, 1);
+  EXPECT_EQ(ReportOf(ProbeOf(1e9)).curves[0].points.back().strain, 10);
+  EXPECT_EQ(ReportOf(ProbeOf(std::nullopt)).curves[0].points.back().strain, 1);
 }
 
 TEST(Probe, BreaksAtOnceWithoutStrength) {
-  const StressStrainCurve curve = Run(ProbeOf(0.0)).curves[0];
+  const StressStrainCurve curve = ReportOf(ProbeOf(0.0)).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kTensileStrength);
   EXPECT_EQ(curve.points.size(), 1u);
 }
 
 TEST(Probe, PullsAlongAndAcrossFibresUnlessToldOtherwise) {
-  const ProbeReport report = Run(FibreProbe(3e6, 1));
+  const ProbeReport report = ReportOf(FibreProbe(3e6, 1));
   ASSERT_EQ(report.curves.size(), 2u);
   EXPECT_EQ(report.curves[0].direction, (Vec3{0, 0, 1}));
   EXPECT_EQ(report.curves[1].direction[2], 0);
@@ -101,17 +101,17 @@ TEST(Probe, PullsAlongAndAcrossFibresUnlessToldOtherwise) {
 
 TEST(Probe, BreaksTheMatrixWhileFibresCarryTheirShare) {
   MaterialProbe probe = FibreProbe(3e6, 1);
-  const StressStrainCurve matrix = Run(probe).curves[0];
+  const StressStrainCurve matrix = ReportOf(probe).curves[0];
   EXPECT_EQ(matrix.end, CurveEnd::kTensileStrength);
   // At 1 % strain, where the laws are nearly linear: the matrix carries a quarter.
   EXPECT_NEAR(matrix.points.back().nominal_stress, 4e4, 0.03 * 4e4);
   probe.stress = FractureStress::kTotal;
-  const StressStrainCurve total = Run(probe).curves[0];
+  const StressStrainCurve total = ReportOf(probe).curves[0];
   EXPECT_NEAR(total.points.back().nominal_stress, 1e4, 1e-6);
 }
 
 TEST(Probe, NamesTheStrengthOfFibresWhereItHolds) {
-  const ProbeReport report = Run(FibreProbe(0, 3));
+  const ProbeReport report = ReportOf(FibreProbe(0, 3));
   EXPECT_EQ(report.curves[0].end, CurveEnd::kDirectionalStrength);
   EXPECT_NEAR(report.curves[0].points.back().nominal_stress, 3e4, 1e-6);
   EXPECT_EQ(report.curves[1].end, CurveEnd::kTensileStrength);
@@ -125,7 +125,7 @@ MaterialProbe DuctileProbe() {
 }
 
 TEST(Probe, LetsADuctileBarFlowUntilItHardensToItsStrength) {
-  const StressStrainCurve curve = Run(DuctileProbe()).curves[0];
+  const StressStrainCurve curve = ReportOf(DuctileProbe()).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kTensileStrength);
   const CurvePoint& end = curve.points.back();
   // Edge stress is per area after flow, so nearly true stress; yield is in Kirchhoff stress. They
@@ -150,7 +150,7 @@ TEST(Probe, LetsADuctileBarFlowUntilItHardensToItsStrength) {
 TEST(Probe, EndsADuctileBarAtItsFailureStrain) {
   MaterialProbe probe = DuctileProbe();
   probe.material.plasticity->failure_strain = 0.1;
-  const StressStrainCurve curve = Run(probe).curves[0];
+  const StressStrainCurve curve = ReportOf(probe).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kFailureStrain);
   EXPECT_NEAR(curve.points.back().plastic_strain, 0.1, 1e-9);
   EXPECT_NEAR(curve.points.back().failure_ratio, 1, 1e-9 / 0.1);
@@ -160,7 +160,7 @@ TEST(Probe, LetsAPerfectlyPlasticBarFlowOn) {
   MaterialProbe probe = DuctileProbe();
   probe.material.plasticity->hardening = 0;
   probe.largest_strain = 1;
-  const StressStrainCurve curve = Run(probe).curves[0];
+  const StressStrainCurve curve = ReportOf(probe).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kLargestStrain);
   EXPECT_NEAR(curve.points.back().true_stress * curve.points.back().volume_ratio, 1e4, 1);
 }
@@ -168,7 +168,7 @@ TEST(Probe, LetsAPerfectlyPlasticBarFlowOn) {
 TEST(Probe, AnswersAGradientAfterFlow) {
   MaterialProbe probe = DuctileProbe();
   probe.deformation_gradients = {{1, 0.1, 0, 0, 1, 0, 0, 0, 1}, {1, 1e-3, 0, 0, 1, 0, 0, 0, 1}};
-  const ProbeReport report = Run(probe);
+  const ProbeReport report = ReportOf(probe);
   EXPECT_GT(report.points[0].plastic_strain, 0.01);
   EXPECT_EQ(report.points[1].plastic_strain, 0);
 }
@@ -177,13 +177,13 @@ TEST(Probe, PressesBarsUntilTheyAreCrushed) {
   MaterialProbe probe = ProbeOf(1e3);
   probe.material.compressive_strength = 5e4;
   probe.largest_strain = -0.5;
-  const StressStrainCurve curve = Run(probe).curves[0];
+  const StressStrainCurve curve = ReportOf(probe).curves[0];
   EXPECT_EQ(curve.end, CurveEnd::kCompressiveStrength);
   EXPECT_NEAR(curve.points.back().nominal_stress, -5e4, 1e-6);
   EXPECT_LT(curve.points.back().strain, -0.04);
   probe.material.compressive_strength.reset();
   probe.largest_strain = -0.2;
-  EXPECT_EQ(Run(probe).curves[0].points.back().strain, -0.2);
+  EXPECT_EQ(ReportOf(probe).curves[0].points.back().strain, -0.2);
 }
 
 TEST(Probe, TakesDirectionsThatDependOnThePlaceFromAPoint) {
@@ -193,15 +193,15 @@ TEST(Probe, TakesDirectionsThatDependOnThePlaceFromAPoint) {
               testing::HasSubstr("point: is missing; the direction of material.fibres[0] depends"));
   probe.point = Vec3{2, 0, 5};
   EXPECT_TRUE(ValidateProbe(probe).ok());
-  EXPECT_NEAR(Run(probe).curves[0].direction[1], 1, 1e-15);
+  EXPECT_NEAR(ReportOf(probe).curves[0].direction[1], 1, 1e-15);
   probe.fibre_directions = {{3, 0, 0}};
-  EXPECT_EQ(Run(probe).curves[0].direction, (Vec3{1, 0, 0}));
+  EXPECT_EQ(ReportOf(probe).curves[0].direction, (Vec3{1, 0, 0}));
 }
 
 TEST(Probe, AnswersGradientsRowByRow) {
   MaterialProbe probe = ProbeOf(1e4);
   probe.deformation_gradients = {{1, 1e-3, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  const ProbeReport report = Run(probe);
+  const ProbeReport report = ReportOf(probe);
   EXPECT_TRUE(report.curves.empty());
   ASSERT_EQ(report.points.size(), 2u);
   const double mu = 1e6 / 2.6;

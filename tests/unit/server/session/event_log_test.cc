@@ -54,7 +54,7 @@ TEST(EventLogTest, AFileTornAtAnyByteKeepsItsWholeRecords) {
   TemporaryDirectory directory;
   WriteFrames(directory / "events", {1, 2, 3});
   const std::string bytes = ReadBytes(directory / "events");
-  int64_t kept = 0;
+  int64_t kept = -1;
   for (size_t size = 0; size <= bytes.size(); ++size) {
     WriteBytes(directory / "events", bytes.substr(0, size));
     absl::StatusOr<EventLogWriter> log = EventLogWriter::Open(directory / "events", 100);
