@@ -20,61 +20,27 @@ import numpy as np
 import zstandard
 from google.protobuf import json_format, text_format
 
-from cleave.answers import Curve, Frame, ImpurityPreview, Mesh, Probe
+from cleave.answers import Curve, ImpurityPreview, Mesh, Probe
 from cleave.checksums import crc32c
-from cleave.events import Events, PieceNames
-from cleave.stream import FrameDecoder, split_frame
-
-try:
-    from cleave.v1 import (
-        asset_pb2,
-        asset_pb2_grpc,
-        frame_pb2,
-        frame_pb2_grpc,
-        impurity_pb2,
-        impurity_pb2_grpc,
-        material_pb2,
-        material_pb2_grpc,
-        scene_pb2,
-        server_pb2,
-        server_pb2_grpc,
-        session_pb2,
-        session_pb2_grpc,
-    )
-    from google.rpc import error_details_pb2, status_pb2
-except ImportError as error:
-    raise ImportError("the stubs are missing: run client/python/make_stubs.py once") from error
+from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay  # noqa: F401
+from cleave.session import Session, rung_number
+from cleave.stubs import (
+    asset_pb2,
+    asset_pb2_grpc,
+    frame_pb2_grpc,
+    impurity_pb2,
+    impurity_pb2_grpc,
+    material_pb2,
+    material_pb2_grpc,
+    scene_pb2,
+    server_pb2,
+    server_pb2_grpc,
+    session_pb2,
+    session_pb2_grpc,
+)
 
 _CHUNK_BYTES = 256 * 1024
 _CALL_SECONDS = 30
-_ATTEMPTS = 8
-
-
-class CleaveError(Exception):
-    """What the server answered. `faults` lists (field, description) where it named fields."""
-
-    def __init__(self, code, message, faults=()):
-        self.code = code
-        self.faults = list(faults)
-        lines = [f"{field}: {text}" for field, text in self.faults] or [message]
-        super().__init__("\n".join(lines))
-
-    @classmethod
-    def of(cls, error):
-        faults = []
-        for key, value in error.trailing_metadata() or ():
-            if key != "grpc-status-details-bin":
-                continue
-            rich = status_pb2.Status.FromString(value)
-            for detail in rich.details:
-                bad_request = error_details_pb2.BadRequest()
-                if detail.Unpack(bad_request):
-                    faults += [(v.field, v.description) for v in bad_request.field_violations]
-        return cls(error.code(), error.details(), faults)
-
-
-class SimulationFailed(Exception):
-    """The run cannot go on; the frames so far have been given."""
 
 
 def load_scene(path):
@@ -136,7 +102,7 @@ class Client:
             message.regions.add(id=region, name=name)
         data = message.SerializeToString(deterministic=True)
         digest = asset_pb2.Digest(sha256=hashlib.sha256(data).digest(), size_bytes=len(data))
-        for attempt in range(1, _ATTEMPTS + 1):
+        for attempt in range(1, ATTEMPTS + 1):
             missing = self._call(
                 self._assets.FindMissingAssets,
                 asset_pb2.FindMissingAssetsRequest(digests=[digest]),
@@ -146,9 +112,9 @@ class Client:
             try:
                 self._upload(data, digest)
             except CleaveError as error:
-                if error.code != grpc.StatusCode.UNAVAILABLE or attempt == _ATTEMPTS:
+                if error.code != grpc.StatusCode.UNAVAILABLE or attempt == ATTEMPTS:
                     raise
-                time.sleep(_delay(attempt))
+                time.sleep(delay(attempt))
         return digest.sha256.hex()
 
     def create_session(self, session_id, scene, threads=0, validate_only=False, rung=None):
@@ -164,7 +130,7 @@ class Client:
                 scene=scene,
                 threads=threads,
                 validate_only=validate_only,
-                rung=_rung(rung),
+                rung=rung_number(rung),
                 request_id=uuid.uuid4().hex,
             ),
             seconds=300,
@@ -330,173 +296,10 @@ class Client:
 
     def _call(self, method, request, seconds=_CALL_SECONDS, wait=False):
         """A call that is safe to repeat, repeated while the server is away."""
-        for attempt in range(1, _ATTEMPTS + 1):
+        for attempt in range(1, ATTEMPTS + 1):
             try:
                 return method(request, timeout=seconds, wait_for_ready=wait)
             except grpc.RpcError as error:
-                if error.code() != grpc.StatusCode.UNAVAILABLE or attempt == _ATTEMPTS:
+                if error.code() != grpc.StatusCode.UNAVAILABLE or attempt == ATTEMPTS:
                     raise CleaveError.of(error) from None
-                time.sleep(_delay(attempt))
-
-
-class Session:
-    """One simulation on the server."""
-
-    def __init__(self, client, name):
-        self._client = client
-        self.name = name
-
-    def state(self):
-        """The Session message: state, head_frame, goal_frame, progress, scene, error."""
-        return self._client._call(
-            self._client._sessions.GetSession, session_pb2.GetSessionRequest(name=self.name)
-        )
-
-    def run(self, until_frame=0, stop_on_fracture=False):
-        """Starts running towards a goal and returns at once; frames() follows."""
-        return self._client._call(
-            self._client._sessions.RunSession,
-            session_pb2.RunSessionRequest(
-                name=self.name,
-                goal=session_pb2.RunGoal(
-                    until_frame=until_frame, stop_on_fracture=stop_on_fracture
-                ),
-                request_id=uuid.uuid4().hex,
-            ),
-        )
-
-    def step(self, frames=1, seconds=600):
-        """Advances by some frames and returns the response message."""
-        head = max(0, self.state().head_frame)
-        return self._client._call(
-            self._client._sessions.StepSession,
-            session_pb2.StepSessionRequest(name=self.name, frames=frames, expected_head=head),
-            seconds=seconds,
-        )
-
-    def pause(self, abort_step=False):
-        """Stops the run after the frame in work, or at once."""
-        return self._client._call(
-            self._client._sessions.PauseSession,
-            session_pb2.PauseSessionRequest(name=self.name, abort_step=abort_step),
-        )
-
-    def delete(self):
-        """Removes the session and its frames; repeating it is no error."""
-        self._client._call(
-            self._client._sessions.DeleteSession,
-            session_pb2.DeleteSessionRequest(name=self.name, allow_missing=True),
-        )
-
-    def mesh(self):
-        """The Mesh (metres) that node and edge ids of frames refer to."""
-        mesh = self.state().scene.mesh
-        scale = mesh.unit_scale if mesh.HasField("unit_scale") else 1.0
-        return self._client.download_mesh(mesh.asset, scale)
-
-    def frames(
-        self,
-        first_frame=0,
-        stop_frame=None,
-        mesh=None,
-        events=False,
-        rung=None,
-        tolerance=None,
-        latest=False,
-    ):
-        """Yields every Frame once, in order, until the run reaches its goal or is paused.
-
-        Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
-        what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is
-        the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
-        have. With `latest` a slow reader skips to the newest key frame. Raises CleaveError
-        (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
-        """
-        mesh = mesh or self.mesh()
-        decoder = None
-        pieces = PieceNames()
-        attempt = 0
-        while True:
-            request = frame_pb2.StreamFramesRequest(
-                session=self.name, first_frame=first_frame, events=events, latest=latest
-            )
-            if rung is not None:
-                request.rung = _rung(rung)
-            if tolerance is not None:
-                request.tolerance = tolerance
-            if stop_frame is not None:
-                request.stop_frame = stop_frame
-            if decoder is not None and decoder.frame >= 0:
-                request.first_frame = decoder.frame + 1
-                request.resume.epoch = decoder.epoch
-                request.resume.frame = decoder.frame
-                request.resume.state_hash = decoder.state_hash
-            stream = self._client._frames.StreamFrames(request)
-            try:
-                data = b""
-                broken = frame_pb2.FrameEvents()
-                for message in stream:
-                    event = message.WhichOneof("event")
-                    if event == "start" and decoder is None:
-                        given = message.start.tolerance
-                        decoder = FrameDecoder(
-                            message.start.header, mesh.positions, mesh.edges()
-                        )
-                    elif event == "events":
-                        if broken.frame not in (0, message.events.frame):
-                            raise CleaveError(
-                                grpc.StatusCode.DATA_LOSS,
-                                f"events of frame {message.events.frame} came between those of "
-                                f"frame {broken.frame} and the frame",
-                            )
-                        broken.MergeFrom(message.events)
-                    elif event == "chunk":
-                        data += message.chunk.payload
-                        if len(data) < message.chunk.frame_bytes:
-                            continue
-                        header, _ = split_frame(data)
-                        # A server that cannot resume begins at a key frame before.
-                        known = header.epoch == decoder.epoch and header.frame <= decoder.frame
-                        if not known:
-                            decoder.apply(data)
-                        told = Events.of_message(broken) if events and not known else None
-                        data = b""
-                        attempt = 0
-                        if not known and decoder.frame >= first_frame:
-                            yield Frame(
-                                decoder.frame,
-                                decoder.time,
-                                decoder.fragments,
-                                decoder.positions.copy(),
-                                decoder.broken_edges.copy(),
-                                pieces.begin(told),
-                                given,
-                            )
-                        pieces.follow(told)
-                        broken.Clear()
-                    elif event == "end":
-                        if message.end.reason == frame_pb2.END_REASON_FAILED:
-                            raise SimulationFailed(f"{self.name}: {message.end.message}")
-                        if message.end.reason != frame_pb2.END_REASON_SHUTDOWN:
-                            return
-            except grpc.RpcError as error:
-                if error.code() != grpc.StatusCode.UNAVAILABLE:
-                    raise CleaveError.of(error) from None
-            finally:
-                stream.cancel()
-            attempt += 1
-            if attempt >= _ATTEMPTS:
-                raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
-            time.sleep(_delay(attempt))
-
-
-def _rung(name):
-    names = {None: 0, "preview": 1, "standard": 2, "fine": 3, "lossless": 4}
-    if name not in names:
-        raise ValueError(f"rung: {name!r} is none of preview, standard, fine, lossless")
-    return names[name]
-
-
-def _delay(attempt):
-    """Seconds before the next attempt."""
-    return min(5.0, 0.2 * 2 ** (attempt - 1))
+                time.sleep(delay(attempt))
