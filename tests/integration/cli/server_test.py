@@ -1,0 +1,94 @@
+"""Verbs that ask a server: submit, step, watch, list, plan, cancel, info."""
+
+import json
+import subprocess
+
+from cleave_cli import BLOCK, CLEAVED, CliTest, cleave, main
+
+
+class Server(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.address = f"unix:{self.folder}/socket"
+        log = open(self.folder / "log", "w")
+        self.addCleanup(log.close)
+        self.server = subprocess.Popen(
+            [CLEAVED, "--listen", self.address, "--data", self.folder / "data"],
+            stdout=log, stderr=log)
+        self.addCleanup(self.server.wait)
+        self.addCleanup(self.server.terminate)
+
+    def ask(self, verb, *arguments):
+        return cleave(verb, *arguments, "--server", self.address)
+
+    def test_session_is_submitted_stepped_watched_and_deleted(self):
+        scene = self.scene(BLOCK % 6)
+        code, output, errors = self.ask("submit", scene, "--idle", "--session", "block")
+        self.assertEqual((code, output), (0, "sessions/block\n"), errors)
+        code, output, errors = self.ask("step", "block", "-n", "2", "--json")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(json.loads(output)["head_frame"], "2")
+        out = self.folder / "out"
+        code, output, errors = self.ask("watch", "block", "--run", "--out", out, "--json")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual([json.loads(line)["frame"] for line in output.splitlines()],
+                         list(range(7)))
+        self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        code, output, _ = self.ask("list", "--json")
+        self.assertEqual([json.loads(line)["name"] for line in output.splitlines()],
+                         ["sessions/block"])
+        self.assertEqual(self.ask("cancel", "block", "--delete")[0], 0)
+        self.assertEqual(self.ask("watch", "block")[0], 6)
+        code, output, _ = self.ask("info", "--json")
+        self.assertEqual(json.loads(output)["api_versions"], ["cleave.v1"])
+
+    def test_viewers_choose_among_the_accuracies_that_a_session_keeps(self):
+        scene = self.scene(BLOCK % 6)
+        self.assertEqual(self.ask("submit", scene, "--session", "fine", "--rung", "fine")[0], 0)
+        sizes = []
+        for rung in ("preview", "standard", "fine"):
+            out = self.folder / rung
+            code, output, errors = self.ask("watch", "fine", "--rung", rung, "--out", out, "--json")
+            self.assertEqual(code, 0, errors)
+            first, *frames = map(json.loads, output.splitlines())
+            self.assertEqual((first["event"], first["rung"]), ("accuracy", rung))
+            self.assertEqual([frame["frame"] for frame in frames], list(range(7)))
+            sizes.append((out / "frames.clv").stat().st_size)
+            self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        self.assertEqual(sizes, sorted(sizes))
+        tolerance = first["tolerance"]
+        code, _, errors = self.ask("watch", "fine", "--tolerance", 99.9 * tolerance)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("(standard)", errors)
+        code, _, errors = self.ask("watch", "fine", "--tolerance", tolerance / 2)
+        self.assertEqual(code, 7, errors)
+        self.assertIn("is finer than", errors)
+        code, _, errors = self.ask("watch", "fine", "--rung", "preview", "--out", out)
+        self.assertEqual(code, 7, errors)
+        self.assertIn("another accuracy", errors)
+        self.assertEqual(self.ask("watch", "fine", "--rung", "finest")[0], 2)
+        self.assertEqual(self.ask("watch", "fine", "--rung", "fine", "--tolerance", 1)[0], 2)
+        code, _, errors = self.ask("run", scene, "--out", self.folder / "run", "--rung", "preview")
+        self.assertEqual(code, 0, errors)
+        self.assertIn("(preview)", errors)
+        code, _, errors = self.ask("run", scene, "--out", self.folder / "run", "--rung", "standard")
+        self.assertEqual(code, 7, errors)
+
+    def test_name_taken_by_another_scene_exits_7_and_bad_name_3(self):
+        scene = self.scene(BLOCK % 2)
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)  # again
+        code, _, errors = self.ask("submit", self.scene(BLOCK % 3), "--idle", "--session", "block")
+        self.assertEqual(code, 7, errors)
+        self.assertEqual(self.ask("submit", scene, "--session", "Not A Name")[0], 3)
+
+    def test_plan_names_parts_and_costs_without_a_session(self):
+        code, output, errors = self.ask("plan", self.scene(BLOCK % 2), "--json")
+        self.assertEqual(code, 0, errors)
+        plan = json.loads(output)
+        self.assertGreater(int(plan["tet_count"]), 100)
+        self.assertEqual(self.ask("list", "--json")[1], "")
+
+
+if __name__ == "__main__":
+    main()
