@@ -10,9 +10,11 @@
 #include "absl/strings/cord.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "client/cpp/rpc_error.h"
 #include "client/io/impurity/layer_files.h"
+#include "client/io/impurity/trim_paint.h"
 #include "client/io/mesh/file_bytes.h"
 #include "client/io/mesh/mesh_file.h"
 #include "client/io/surface/surface_file.h"
@@ -101,6 +103,33 @@ absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
   return absl::OkStatus();
 }
 
+// Makes a scene that is too large for servers smaller, or says which layer makes it so large.
+absl::Status FitMessage(SceneInput& input) {
+  v1::Scene& message = input.file.scene;
+  if (message.ByteSizeLong() <= kMostSceneBytes || !message.has_impurities())
+    return absl::OkStatus();
+  if (const absl::StatusOr<TetMesh> mesh = SceneMesh(input); mesh.ok()) {
+    TrimPaint(input.scene, *mesh, message);
+    Faults none;  // as many as before
+    input.scene = SceneFromMessage(message, none);
+  }
+  if (message.ByteSizeLong() <= kMostSceneBytes) return absl::OkStatus();
+  int largest = 0;
+  for (int k = 1; k < message.impurities().layers_size(); ++k) {
+    const v1::Impurities& impurities = message.impurities();
+    if (impurities.layers(k).ByteSizeLong() > impurities.layers(largest).ByteSizeLong())
+      largest = k;
+  }
+  const bool layered = message.impurities().layers_size() > 0;
+  const size_t bytes = layered ? message.impurities().layers(largest).ByteSizeLong()
+                               : message.impurities().ByteSizeLong();
+  return absl::InvalidArgumentError(input.file.Describe(
+      {{layered ? absl::StrCat("impurities.layers[", largest, "]") : "impurities",
+        absl::StrFormat("holds %.1f MiB; a scene with all its layers travels in %.1f MiB",
+                        static_cast<double>(bytes) / (1 << 20),
+                        static_cast<double>(kMostSceneBytes) / (1 << 20))}}));
+}
+
 // All that follows the reading of the scene file.
 absl::Status Complete(SceneInput& input) {
   CLEAVE_RETURN_IF_ERROR(ReadColliderSurfaces(input.file));
@@ -111,9 +140,10 @@ absl::Status Complete(SceneInput& input) {
   }
   CLEAVE_RETURN_IF_ERROR(CheckScene(input));
   const std::string mesh_path = MeshPath(input.file);
-  if (mesh_path.empty()) return absl::OkStatus();
+  if (mesh_path.empty()) return FitMessage(input);
   CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
-  return CheckWithMesh(input, mesh_path);
+  CLEAVE_RETURN_IF_ERROR(CheckWithMesh(input, mesh_path));
+  return FitMessage(input);
 }
 
 }  // namespace

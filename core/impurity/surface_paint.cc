@@ -1,6 +1,7 @@
 #include "core/impurity/surface_paint.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -55,6 +56,24 @@ std::vector<double> PaintShares(const SurfacePaint& paint, const ImpurityLayer& 
     }
   });
   return shares;
+}
+
+std::vector<int32_t> PaintingTriangles(const SurfacePaint& paint, const ImpurityLayer& layer,
+                                       const TetMesh& mesh) {
+  const SurfaceDistance surface(paint.vertices, paint.triangles);
+  std::vector<int32_t> closest(mesh.rest_positions.size());
+  ParallelFor(mesh.node_count(), 64, [&](int64_t begin, int64_t end) {
+    for (int64_t n = begin; n < end; ++n) {
+      const auto node = static_cast<size_t>(n);
+      const SurfacePoint point =
+          surface.ClosestPoint(Eigen::Vector3d(mesh.rest_positions[node].data()));
+      closest[node] = ShareAt(point.distance - paint.depth, layer) > 0 ? point.triangle : -1;
+    }
+  });
+  std::sort(closest.begin(), closest.end());
+  closest.erase(std::unique(closest.begin(), closest.end()), closest.end());
+  if (!closest.empty() && closest.front() < 0) closest.erase(closest.begin());
+  return closest;
 }
 
 }  // namespace cleave

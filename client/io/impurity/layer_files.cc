@@ -76,8 +76,9 @@ absl::Status ReadNodeValues(const std::string& path, v1::NodeValues& values) {
   return absl::OkStatus();
 }
 
-// Servers take messages of 4 MiB.
-constexpr int kMostTexels = 1024;  // a side
+// A side. Nodes sample a texture, and bodies have fewer of them along a side; a larger picture
+// would only fill the 4 MiB that servers take.
+constexpr int kMostTexels = 1024;
 
 absl::Status ReadTexture(const std::string& path, v1::SurfaceTexture& texture) {
   const int channel = texture.channel();

@@ -7,6 +7,7 @@
 
 #include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
+#include "client/io/preview/image.h"
 #include "google/rpc/error_details.pb.h"
 #include "tests/unit/temporary_directory.h"
 
@@ -88,6 +89,72 @@ TEST_F(SceneInputTest, SurfaceFilesOfCollidersTravelInsideTheScene) {
   double largest = 0;
   for (const Vec3& vertex : surface.vertices) largest = std::max(largest, vertex[0]);
   EXPECT_DOUBLE_EQ(largest, 1);
+}
+
+// A square of n x n pairs of triangles, 1 m wide, on top of the unit box.
+std::string TexturedSquare(int n) {
+  std::string text;
+  for (int i = 0; i <= n; ++i) {
+    for (int j = 0; j <= n; ++j) {
+      const double x = i / static_cast<double>(n), y = j / static_cast<double>(n);
+      absl::StrAppend(&text, "v ", x, " ", y, " 1\nvt ", x, " ", y, "\n");
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j + 1, b = a + n + 1;
+      absl::StrAppend(&text, "f ", a, "/", a, " ", b, "/", b, " ", b + 1, "/", b + 1, "\nf ", a,
+                      "/", a, " ", b + 1, "/", b + 1, " ", a + 1, "/", a + 1, "\n");
+    }
+  }
+  return text;
+}
+
+TEST_F(SceneInputTest, TexturesOfFourThousandTexelsOnFineSurfacesFitIntoOneMessage) {
+  Write("square.obj", TexturedSquare(220));
+  Write("grain.png", *EncodePng(Image(4096, 256)));
+  const auto input = LoadScene(
+      Write("a.scene.json",
+            absl::StrCat(
+                "{\"mesh\": {\"box\": {\"size\": [1, 1, 1], \"resolution\": {\"cell_size\": 0.1}}},"
+                "\"impurities\": {\"layers\": [{\"potency\": 1, \"paint\": {\"file\": "
+                "\"square.obj\", \"depth\": 0.2, \"texture\": {\"file\": \"grain.png\"}}}]}, ",
+                kMaterial, "}")));
+  ASSERT_TRUE(input.ok()) << input.status();
+  EXPECT_LT(input->file.scene.ByteSizeLong(), size_t{2} << 20);
+  const v1::SurfacePaint& paint = input->file.scene.impurities().layers(0).paint();
+  EXPECT_EQ(paint.texture().width(), 1024);
+  EXPECT_EQ(paint.texture().height(), 256);
+  EXPECT_GT(paint.triangles_size(), 3 * 50);
+  EXPECT_EQ(paint.texture().uvs_size(), 2 * paint.triangles_size());
+  // What is simulated here is what is sent.
+  const auto& read = std::get<SurfacePaint>(input->scene.impurities->layers[0].source);
+  EXPECT_EQ(3 * read.triangles.size(), static_cast<size_t>(paint.triangles_size()));
+  EXPECT_EQ(3 * read.vertices.size(), static_cast<size_t>(paint.vertices_size()));
+  for (size_t k = 0; k < read.triangles.size(); ++k) {
+    for (size_t corner = 0; corner < 3; ++corner) {
+      const Vec3& vertex = read.vertices[static_cast<size_t>(read.triangles[k][corner])];
+      EXPECT_FLOAT_EQ(read.texture->uvs[k][2 * corner], static_cast<float>(vertex[0]));
+      EXPECT_FLOAT_EQ(read.texture->uvs[k][2 * corner + 1], static_cast<float>(vertex[1]));
+    }
+  }
+}
+
+TEST_F(SceneInputTest, ALayerThatNoMessageHoldsIsNamed) {
+  std::string shares = "0";
+  for (int i = 1; i < 550'000; ++i) shares += ",0";
+  const absl::Status status =
+      LoadScene(
+          Write("a.scene.json",
+                absl::StrCat(
+                    "{\"mesh\": {\"box\": {\"size\": [1, 1, 1], \"resolution\": "
+                    "{\"cell_size\": 0.5}}},\n\"impurities\": {\"layers\": [\n{\"noise\": {}, "
+                    "\"potency\": 1},\n{\"potency\": 1, \"node_values\": {\"shares\": [",
+                    shares, "]}}]}, ", kMaterial, "}")))
+          .status();
+  EXPECT_THAT(std::string(status.message()),
+              HasSubstr(":4: impurities.layers[1]: holds 4.2 MiB; a scene with all its layers "
+                        "travels in 3.9 MiB"));
 }
 
 TEST_F(SceneInputTest, FaultsOfSurfaceFilesNameFieldAndLine) {

@@ -8,6 +8,7 @@
 
 #include "core/base/counter_rng.h"
 #include "core/impurity/bake.h"
+#include "core/impurity/surface_paint.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 
 namespace cleave {
@@ -123,6 +124,51 @@ TEST_F(PaintedBlock, TurnsWithItsSurface) {
   const std::vector<double> after = Potencies();
   for (size_t node = 0; node < before.size(); ++node)
     EXPECT_NEAR(after[node], before[node], 1e-9) << node;
+}
+
+TEST_F(PaintedBlock, HasItsPaintFromTrianglesThatAreClosestToItsNodes) {
+  // The same picture on 60 x 30 pairs of triangles, and on a lid that no node is near to.
+  const auto at = [](int i, int j) -> Vec3 { return {2 * i / 60.0, j / 30.0, 0.5}; };
+  paint_.vertices = {{0, 0, 9}, {2, 0, 9}, {2, 1, 9}};
+  paint_.triangles = {{0, 1, 2}};
+  paint_.texture->uvs = {{0, 0, 1, 0, 1, 1}};
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 30; ++j) {
+      for (const auto& corners : {std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1)},
+                                  std::array{at(i, j), at(i + 1, j + 1), at(i, j + 1)}}) {
+        const auto first = static_cast<int32_t>(paint_.vertices.size());
+        paint_.triangles.push_back({first, first + 1, first + 2});
+        std::array<float, 6>& uvs = paint_.texture->uvs.emplace_back();
+        for (size_t k = 0; k < 3; ++k) {
+          paint_.vertices.push_back(corners[k]);
+          uvs[2 * k] = static_cast<float>(corners[k][0] / 2);
+          uvs[2 * k + 1] = static_cast<float>(corners[k][1]);
+        }
+      }
+    }
+  }
+  const std::vector<double> of_all = Potencies();
+  ImpurityLayer layer;
+  layer.falloff = 0.2;
+  const std::vector<int32_t> kept = PaintingTriangles(paint_, layer, mesh_);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_GT(kept.front(), 0);  // not the lid
+  EXPECT_LE(kept.size(), mesh_.rest_positions.size());
+  const SurfacePaint all = paint_;
+  paint_.triangles.clear();
+  paint_.texture->uvs.clear();
+  for (const int32_t triangle : kept) {
+    paint_.triangles.push_back(all.triangles[static_cast<size_t>(triangle)]);
+    paint_.texture->uvs.push_back(all.texture->uvs[static_cast<size_t>(triangle)]);
+  }
+  const std::vector<double> of_kept = Potencies();
+  for (size_t node = 0; node < of_all.size(); ++node)
+    EXPECT_NEAR(of_kept[node], of_all[node], 1e-6) << node;  // of coordinates in float
+  // What lies deeper than paint reaches does not count: here all but the top itself.
+  for (Vec3& vertex : paint_.vertices) vertex[2] += 0.1;
+  paint_.depth = 0.05;
+  layer.falloff = 0;
+  EXPECT_TRUE(PaintingTriangles(paint_, layer, mesh_).empty());
 }
 
 }  // namespace
