@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/number_check.h"
 #include "core/scene/limits.h"
 #include "proto/convert/rung.h"
 
@@ -29,7 +30,7 @@ void AddAccuracyOptions(CLI::App& verb, AccuracyOptions& options, const std::str
           ->type_name("RUNG");
   verb.add_option("--tolerance", options.tolerance,
                   "Instead of a rung: largest error of a coordinate, in metres")
-      ->check(CLI::Range(1e-15, limits::kMaxLength))
+      ->check(NumberWithin(1e-15, limits::kMaxLength))
       ->type_name("METRES")
       ->excludes(rung);
 }

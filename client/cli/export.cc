@@ -12,6 +12,7 @@
 #include "absl/strings/str_join.h"
 #include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
+#include "client/cli/number_check.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
 #include "client/cli/run_results.h"
@@ -20,6 +21,7 @@
 #include "client/io/series/write_aside.h"
 #include "core/base/faults.h"
 #include "core/base/status.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 namespace {
@@ -186,7 +188,7 @@ void AddExport(CLI::App& app, Program& program) {
                    "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
       ->type_name("MESH");
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_option(
@@ -196,19 +198,20 @@ void AddExport(CLI::App& app, Program& program) {
       ->type_name("FILE");
   verb->add_option("--render-scale", options->render_scale,
                    "Metres for one unit of the render mesh; default: 1")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->type_name("METRES");
   verb->add_option("--reports", options->reports,
                    "For plot: the report lines; default: reports.jsonl in RUN")
       ->type_name("FILE");
-  verb->add_option("--first", options->first, "First frame")->check(CLI::NonNegativeNumber);
-  verb->add_option("--last", options->last, "Last frame")->check(CLI::NonNegativeNumber);
+  verb->add_option("--first", options->first, "First frame")
+      ->check(CountWithin(0, int64_t{1} << 40));
+  verb->add_option("--last", options->last, "Last frame")->check(CountWithin(0, int64_t{1} << 40));
   verb->add_option("--stride", options->stride, "Every N-th frame")
-      ->check(CLI::Range(int64_t{1}, int64_t{1} << 40))
+      ->check(CountWithin(1, int64_t{1} << 40))
       ->type_name("N");
   verb->add_option("--rate", options->rate,
                    "For bake-mdd, glb and usda: frames a second when played; default: as simulated")
-      ->check(CLI::Range(1e-3, 1e5))
+      ->check(NumberWithin(1e-3, 1e5))
       ->type_name("FPS");
   verb->add_flag("--velocities", options->velocities,
                  "For bake-pc2, bake-mdd and glb: velocities of the points as well");

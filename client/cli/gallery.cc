@@ -16,6 +16,7 @@
 #include "client/cli/console.h"
 #include "client/cli/gallery_runs.h"
 #include "client/cli/json_line.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/progress.h"
 #include "client/io/mesh/file_bytes.h"
@@ -260,19 +261,19 @@ void AddGallery(CLI::App& app, Program& program) {
       ->capture_default_str();
   verb->add_option("--coarseness", options->coarseness,
                    "Cells so many times as long as at full size: 2 is some 8 to 16 times as fast")
-      ->check(CLI::Range(0.1, 100.0))
+      ->check(NumberWithin(0.1, 100))
       ->capture_default_str()
       ->type_name("FACTOR");
   verb->add_option("--width", options->width, "Pixels of a picture")
-      ->check(CLI::Range(16, kMaxImageSide))
+      ->check(CountWithin(16, kMaxImageSide))
       ->capture_default_str()
       ->type_name("PIXELS");
   verb->add_option("--threads", options->threads, "Threads of each run; results do not change")
-      ->check(CLI::Range(1, 1024))
+      ->check(CountWithin(1, 1024))
       ->capture_default_str()
       ->type_name("N");
   verb->add_option("--jobs", options->jobs, "Runs at a time")
-      ->check(CLI::Range(1, 256))
+      ->check(CountWithin(1, 256))
       ->capture_default_str()
       ->type_name("N");
   verb->add_option("--runner", options->runner,

@@ -2,17 +2,18 @@
 
 #include <cmath>
 
+#include "client/cli/number_check.h"
 #include "core/scene/limits.h"
 
 namespace cleave {
 
 void AddGoalOptions(CLI::App& verb, GoalOptions& options) {
   verb.add_option("--frames", options.frames, "Stop after this frame; default: the scene's count")
-      ->check(CLI::Range(int64_t{1}, limits::kMaxFrames))
+      ->check(CountWithin(1, limits::kMaxFrames))
       ->type_name("N");
   verb.add_option("--wall-budget", options.wall_seconds,
                   "Stop at a frame's end after this much time on the clock")
-      ->check(CLI::Range(0.001, 1e9))
+      ->check(NumberWithin(0.001, 1e9))
       ->type_name("SECONDS");
   verb.add_flag("--until-fracture", options.until_fracture,
                 "Stop after the first frame that breaks an edge");

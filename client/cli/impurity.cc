@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
 #include "client/cli/impurity_text.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/scene_input.h"
 #include "client/cli/server_access.h"
@@ -23,6 +24,7 @@
 #include "core/base/status.h"
 #include "core/mesh/mesh_check.h"
 #include "core/model/impurity_preview.h"
+#include "core/scene/limits.h"
 #include "core/scene/validate.h"
 #include "proto/convert/impurity_preview.h"
 
@@ -148,21 +150,21 @@ void AddImpurity(CLI::App& app, Program& program) {
       ->type_name("JSON")
       ->allow_extra_args(false);
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_option("--out", options->out,
                    "Write impurity.vtu, affected_edges.vtu and impurity.png here")
       ->type_name("DIR");
   verb->add_option("--width", options->picture.width, "Pixels of the picture")
-      ->check(CLI::Range(16, kMaxImageSide))
+      ->check(CountWithin(16, kMaxImageSide))
       ->capture_default_str()
       ->type_name("PIXELS");
   verb->add_option("--azimuth", options->picture.camera.azimuth, "Turns the camera round the body")
       ->type_name("DEGREES");
   verb->add_option("--elevation", options->picture.camera.elevation,
                    "Lifts the camera above the ground")
-      ->check(CLI::Range(-88.0, 88.0))
+      ->check(NumberWithin(-88, 88))
       ->type_name("DEGREES");
   verb->add_flag("--json", options->json, "As a line of JSON, with every node and affected edge");
   AddServerOptions(*verb, options->server, false);

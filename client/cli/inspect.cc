@@ -3,12 +3,14 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
 #include "client/cli/mesh_text.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/scene_input.h"
 #include "core/base/status.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/quality.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 namespace {
@@ -45,7 +47,7 @@ void AddInspect(CLI::App& app, Program& program) {
       ->required()
       ->type_name("MESH");
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_flag("--json", options->json, "As a line of JSON");

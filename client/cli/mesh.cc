@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/console.h"
 #include "client/cli/mesh_text.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/io/export/vtu.h"
 #include "client/io/series/write_aside.h"
@@ -15,6 +16,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/quality.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 namespace {
@@ -82,11 +84,11 @@ void AddMesh(CLI::App& app, Program& program) {
       ->type_name("SURFACE");
   verb->add_option("--cell", options->resolution.cell_size, "Wanted edge length")
       ->required()
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->type_name("METRES");
   verb->add_option("-o,--out", options->out, "Write the mesh here, as VTU")->type_name("FILE.vtu");
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of the file")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
   const std::map<std::string, MeshLayout> layouts = {{"unstructured", MeshLayout::kUnstructured},

@@ -12,10 +12,12 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/run_results.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/status.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 namespace {
@@ -190,7 +192,7 @@ void AddPreview(CLI::App& app, Program& program) {
                    "Mesh of the recording: a mesh or scene file; default: mesh.pb beside it")
       ->type_name("MESH");
   verb->add_option("--unit-scale", options->unit_scale, "Metres for one unit of a mesh file")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_option("--color", options->look.color_by, "What colours tell; default: region")
@@ -203,22 +205,22 @@ void AddPreview(CLI::App& app, Program& program) {
               .description(""))
       ->type_name("region|piece|strain|damage|impurity");
   verb->add_option("--width", options->look.width, "Pixels of a picture, or of a sheet's tile")
-      ->check(CLI::Range(16, kMaxImageSide))
+      ->check(CountWithin(16, kMaxImageSide))
       ->type_name("PIXELS");
   verb->add_option("--tiles", options->sheet_look.tiles, "Most pictures of a sheet")
-      ->check(CLI::Range(1, 400))
+      ->check(CountWithin(1, 400))
       ->capture_default_str();
   verb->add_option("--rate", options->animation_look.frames_per_second,
                    "Frames a second of the animation")
-      ->check(CLI::Range(0.1, 120.0))
+      ->check(NumberWithin(0.1, 120))
       ->capture_default_str();
   verb->add_option("--stride", options->stride, "Every N-th frame")
-      ->check(CLI::PositiveNumber)
+      ->check(CountWithin(1, int64_t{1} << 40))
       ->type_name("N");
   verb->add_option("--azimuth", options->azimuth, "Turns the camera round the body")
       ->type_name("DEGREES");
   verb->add_option("--elevation", options->elevation, "Lifts the camera above the ground")
-      ->check(CLI::Range(-88.0, 88.0))
+      ->check(NumberWithin(-88, 88))
       ->type_name("DEGREES");
   verb->add_option("--render-mesh", options->render_mesh,
                    "A fine triangle mesh (.obj, .ply, .stl) round the body at rest, which is drawn "
@@ -226,7 +228,7 @@ void AddPreview(CLI::App& app, Program& program) {
       ->type_name("FILE");
   verb->add_option("--render-scale", options->render_scale,
                    "Metres for one unit of the render mesh; default: 1")
-      ->check(CLI::PositiveNumber)
+      ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->type_name("METRES");
   verb->add_option("--title", options->look.title, "Written into the pictures");
   verb->footer(

@@ -12,6 +12,7 @@
 #include "client/cli/follow.h"
 #include "client/cli/goal.h"
 #include "client/cli/json_line.h"
+#include "client/cli/number_check.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
 #include "client/cli/progress.h"
@@ -229,7 +230,7 @@ void AddRun(CLI::App& app, Program& program) {
   AddAccuracyOptions(*verb, options->accuracy, "that the run keeps",
                      "as the scene says, or standard");
   verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
-      ->check(CLI::Range(0, 1024))
+      ->check(CountWithin(0, 1024))
       ->type_name("N");
   verb->add_flag("--fresh", options->fresh, "Throw an earlier run in DIR away first");
   verb->add_flag("--json", options->json, "A JSON line a frame on stdout, and one at the end");

@@ -199,6 +199,10 @@ absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input) {
 }
 
 absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale) {
+  if (unit_scale != 1 && (IsSceneName(path) || absl::EndsWith(path, ".pb"))) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "--unit-scale: ", path, " says itself what unit it has; only other mesh files need it"));
+  }
   if (IsSceneName(path)) {
     CLEAVE_ASSIGN_OR_RETURN(const SceneFile file, ReadSceneFile(path));
     SceneInput input;

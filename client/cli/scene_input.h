@@ -38,7 +38,8 @@ absl::StatusOr<SceneInput> LoadSceneWithLayers(const std::string& path, double u
 absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input);
 
 // A mesh for `cleave inspect` and exporters: a mesh file, a scene file (its mesh, in metres) or the
-// mesh.pb of a run. `unit_scale` applies to mesh files only. Not checked.
+// mesh.pb of a run. Not checked. `unit_scale` is for the first; InvalidArgument for another than 1
+// with those that say it themselves.
 absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale);
 
 // The status of a call about this scene, with the lines of the scene file where fields are named.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/number_check.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -33,7 +34,7 @@ void AddServerOptions(CLI::App& verb, ServerOptions& options, bool required) {
   verb.add_option("--connect-timeout", options.connect_seconds,
                   "How long to wait for the server to answer")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(NumberWithin(0.1, 3600))
       ->capture_default_str();
 }
 

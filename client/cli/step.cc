@@ -4,6 +4,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/server_access.h"
 #include "client/cli/session_text.h"
@@ -60,11 +61,11 @@ void AddStep(CLI::App& app, Program& program) {
       ->type_name("SESSION");
   AddServerOptions(*verb, options->server, true);
   verb->add_option("--frames,-n", options->frames, "How many")
-      ->check(CLI::Range(int64_t{1}, int64_t{1} << 40))
+      ->check(CountWithin(1, int64_t{1} << 40))
       ->capture_default_str()
       ->type_name("N");
   verb->add_option("--timeout", options->seconds, "Longest time of one call")
-      ->check(CLI::Range(0.01, 1e6))
+      ->check(NumberWithin(0.01, 1e6))
       ->capture_default_str()
       ->type_name("SECONDS");
   verb->add_flag("--json", options->json, "The session as a line of JSON");

@@ -5,6 +5,7 @@
 #include "client/cli/accuracy.h"
 #include "client/cli/console.h"
 #include "client/cli/goal.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/scene_input.h"
 #include "client/cli/server_access.h"
@@ -62,7 +63,7 @@ void AddSubmit(CLI::App& app, Program& program) {
                    "Name of the session: a-z, 0-9 and -; default: the scene's name and some digits")
       ->type_name("NAME");
   verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
-      ->check(CLI::Range(0, 1024))
+      ->check(CountWithin(0, 1024))
       ->type_name("N");
   verb->add_flag("--idle", options->idle, "Only create the session, for `cleave step`");
   verb->footer(

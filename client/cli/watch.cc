@@ -7,6 +7,7 @@
 #include "client/cli/console.h"
 #include "client/cli/follow.h"
 #include "client/cli/goal.h"
+#include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/run_folder.h"
 #include "client/cli/server_access.h"
@@ -101,7 +102,7 @@ void AddWatch(CLI::App& app, Program& program) {
           "Folder for the recording: frames.clv, mesh.pb, events.jsonl and scene.textproto")
       ->type_name("DIR");
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
-      ->check(CLI::Range(int64_t{0}, int64_t{1} << 40))
+      ->check(CountWithin(0, int64_t{1} << 40))
       ->type_name("FRAME");
   AddAccuracyOptions(*verb, options->accuracy, "of what is sent", "all that the session keeps");
   verb->add_flag("--run", options->run, "Let a paused session run on first");

@@ -79,8 +79,10 @@ std::string NearestName(absl::string_view name, const std::vector<std::string>& 
 std::string UnknownFieldText(const google::protobuf::Descriptor& message, absl::string_view name) {
   std::vector<std::string> candidates;
   for (int i = 0; i < message.field_count(); ++i) candidates.push_back(message.field(i)->name());
-  return absl::StrCat(Words(message.name()), " field \"", Shortened(name), "\" is unknown",
-                      Advice(name, candidates));
+  // "noise field field" reads like a slip.
+  const std::string words = Words(message.name());
+  return absl::StrCat(words, absl::EndsWith(words, " field") ? " \"" : " field \"", Shortened(name),
+                      "\" is unknown", Advice(name, candidates));
 }
 
 std::string UnknownValueText(const google::protobuf::EnumDescriptor& type, absl::string_view name) {

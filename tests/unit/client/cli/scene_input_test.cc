@@ -39,6 +39,14 @@ TEST_F(SceneInputTest, BundledSceneLoadsWithItsMesh) {
   EXPECT_EQ(mesh->rest_positions[0][0], input->mesh->rest_positions[0][0] * 0.001);
 }
 
+TEST_F(SceneInputTest, UnitOfAFileThatSaysItItselfIsRefused) {
+  for (const std::string path : {"bar.scene.json", "mesh.pb"}) {
+    const absl::Status status = ReadAnyMesh(folder_ + "/" + path, 0.001).status();
+    EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("--unit-scale: " + folder_ + "/" + path));
+  }
+}
+
 TEST_F(SceneInputTest, FaultsOfValuesNameTheirLine) {
   const std::string path = Write(
       "a.scene.json",

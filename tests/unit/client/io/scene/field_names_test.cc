@@ -33,6 +33,8 @@ TEST(FieldNames, UnknownFieldNamesMessageInWords) {
   EXPECT_EQ(
       UnknownFieldText(*v1::MeshResolution::descriptor(), "colour"),
       "mesh resolution field \"colour\" is unknown; there are: layout, cell_size, jitter, seed");
+  EXPECT_EQ(UnknownFieldText(*v1::BandField::descriptor(), "widht"),
+            "band field \"widht\" is unknown; did you mean \"width\"?");
 }
 
 }  // namespace
