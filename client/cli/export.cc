@@ -10,7 +10,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
 #include "client/cli/number_check.h"
 #include "client/cli/products.h"
@@ -128,7 +127,6 @@ absl::Status ExportBake(Program& program, const Options& options, const Recorded
 absl::Status Export(Program& program, const Options& options) {
   CLEAVE_RETURN_IF_ERROR(CheckFormat(options));
   if (options.format == "plot") return ExportPlot(options);
-  const BoundedStop bounded(program.interrupt);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,

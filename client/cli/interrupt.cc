@@ -3,7 +3,14 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <utility>
+
+#include "absl/status/status.h"
+#include "client/cli/console.h"
+#include "client/cli/exit_code.h"
 
 namespace cleave {
 namespace {
@@ -15,9 +22,14 @@ sigset_t Watched() {
   return set;
 }
 
+[[noreturn]] void CutOff(int signal) {
+  PrintNote("stopped in the middle of its work; files that were finished stay");
+  std::_Exit(static_cast<int>(ExitCodeOf(absl::CancelledError(""), signal)));
+}
+
 }  // namespace
 
-Interrupt::Interrupt() {
+Interrupt::Interrupt(std::chrono::milliseconds patience) : patience_(patience) {
   const sigset_t watched = Watched();
   pthread_sigmask(SIG_BLOCK, &watched, nullptr);
   signal_ = 0;
@@ -31,18 +43,40 @@ Interrupt::~Interrupt() {
   thread_.join();
 }
 
-void Interrupt::Wait() {
+int Interrupt::NextSignal() const {
   const sigset_t watched = Watched();
-  while (true) {
+  if (!deadline_.has_value()) {
     int number = 0;
-    if (sigwait(&watched, &number) != 0) continue;
+    sigwait(&watched, &number);
+    return number;
+  }
+  const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::max(*deadline_ - Clock::now(), Clock::duration::zero()));
+  const timespec wait{static_cast<time_t>(left.count() / 1'000'000'000),
+                      static_cast<long>(left.count() % 1'000'000'000)};
+  const int number = sigtimedwait(&watched, nullptr, &wait);
+  if (number > 0) return number;
+  return Clock::now() < *deadline_ ? SIGUSR1 : 0;  // something else woke it
+}
+
+void Interrupt::Take(int number) {
+  signal_ = number;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++count_;
+  deadline_.reset();
+  if (handler_ == nullptr || count_ > 2) stop_.Request();
+  if (handler_ != nullptr) return handler_(number, count_);
+  if (count_ > 1) CutOff(number);
+  deadline_ = Clock::now() + patience_;
+}
+
+void Interrupt::Wait() {
+  while (true) {
+    const int number = NextSignal();
     if (ending_) return;
     if (number == SIGUSR1) continue;
-    signal_ = number;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    ++count_;
-    if (handler_ == nullptr || count_ > 2) stop_.Request();
-    if (handler_ != nullptr) handler_(number, count_);
+    if (number == 0) CutOff(signal_);
+    Take(number);
   }
 }
 

@@ -10,7 +10,6 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/cli/bounded_stop.h"
 #include "client/cli/console.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
@@ -165,7 +164,6 @@ class Pictures {
 };
 
 absl::Status Preview(Program& program, const Options& options) {
-  const BoundedStop bounded(program.interrupt);
   CLEAVE_ASSIGN_OR_RETURN(const RecordedRun run,
                           OpenRecordedRun(options.run, options.mesh, options.unit_scale));
   return Pictures(program, options, run).Draw();
