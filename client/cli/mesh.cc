@@ -1,7 +1,9 @@
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/console.h"
@@ -31,11 +33,22 @@ struct Options {
   bool json = false;
 };
 
+// Before the work, which may take minutes.
+absl::Status PrepareOut(const std::string& out) {
+  if (out.empty()) return absl::OkStatus();
+  if (!absl::EndsWithIgnoreCase(out, ".vtu"))
+    return absl::InvalidArgumentError(
+        absl::StrCat("--out: ", out, " does not end in .vtu, which is what it would hold"));
+  return MakeDirectories(std::filesystem::path(out).parent_path().string());
+}
+
 absl::Status MakeMesh(const Options& options) {
+  CLEAVE_RETURN_IF_ERROR(PrepareOut(options.out));
   CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(options.surface));
   for (Vec3& vertex : surface.vertices) {
     for (double& coordinate : vertex) coordinate *= options.unit_scale;
   }
+  PrintNote(absl::StrCat("filling ", options.surface, " with tets"));
   auto body = MeshSurface(surface.vertices, surface.triangles, options.resolution);
   if (!body.ok()) {
     return absl::Status(body.status().code(),

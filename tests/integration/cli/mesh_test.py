@@ -30,6 +30,13 @@ class Mesh(CliTest):
         code, _, errors = cleave("mesh", surface, "--cell", "1e-5")
         self.assertEqual(code, 3)
         self.assertIn("box.obj: cell_size: 1e-05 m makes about", errors)
+        code, _, errors = cleave("mesh", surface, "--cell", "3", "-o", self.folder / "box.msh")
+        self.assertEqual(code, 3)
+        self.assertIn("box.msh does not end in .vtu", errors)
+        self.assertFalse((self.folder / "box.msh").exists())
+        deep = self.folder / "a" / "b" / "box.vtu"
+        self.assertEqual(cleave("mesh", surface, "--cell", "3", "-o", deep)[0], 0)
+        self.assertTrue(deep.exists())
 
 
 if __name__ == "__main__":
