@@ -106,12 +106,12 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
   std::atomic<bool> interrupted{false};
   const ScopedHandler handler(interrupt, SignalHandler(client, options, stream, interrupted));
   CLEAVE_RETURN_IF_ERROR(stream.Open());
-  result.mesh_asset = stream.mesh_asset();
   if (options.accuracy.asked()) TellAccuracy(stream, options);
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last()) TakeOver(*last, result);
     CLEAVE_RETURN_IF_ERROR(options.recorder->Begin(stream.header_bytes()));
   }
+  if (options.begun) CLEAVE_RETURN_IF_ERROR(options.begun(stream.mesh_asset()));
   const Stopwatch watch;
   TimeLeft time_left;
   while (true) {

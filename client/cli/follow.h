@@ -2,6 +2,7 @@
 #define CLEAVE_CLIENT_CLI_FOLLOW_H_
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,8 @@ struct FollowOptions {
   AccuracyOptions accuracy;      // asked of the server
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
   EventFile* events = nullptr;   // takes what breaks; may be null
+  // Called once before the first frame, when the recorder fits the stream, with the mesh's asset.
+  std::function<absl::Status(const std::string& mesh_asset)> begun;
 };
 
 struct FollowResult {
@@ -38,12 +41,12 @@ struct FollowResult {
   double last_time = 0;     // s
   int64_t broken_edges = 0;
   int64_t pieces = 0;
-  std::string mesh_asset;
 };
 
 // Receives frames until the stream's end: the goal, the failure, the pause that Ctrl-C asked for.
 // The first signal asks to pause after the frame in work, the second gives that frame up, the third
-// leaves at once; SIGTERM gives up the frame at once. Errors: those of FrameStream and Recorder.
+// leaves at once; SIGTERM gives up the frame at once. Errors: those of FrameStream, Recorder and
+// `begun`.
 absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
                                     const FollowOptions& options);
 

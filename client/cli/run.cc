@@ -2,6 +2,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,8 @@
 #include "client/cli/session_start.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/status.h"
+#include "core/stream/rungs.h"
+#include "proto/convert/rung.h"
 
 namespace cleave {
 namespace {
@@ -56,7 +59,6 @@ class Run {
     CLEAVE_RETURN_IF_ERROR(FindOrCreateSession());
     CLEAVE_RETURN_IF_ERROR(StartRunning());
     CLEAVE_ASSIGN_OR_RETURN(const FollowResult result, RecordFrames());
-    CLEAVE_RETURN_IF_ERROR(KeepMesh(result));
     CLEAVE_RETURN_IF_ERROR(KeepReports());
     return Conclude(result);
   }
@@ -74,7 +76,7 @@ class Run {
       auto session = client().GetSession(*earlier);
       if (session.ok()) {
         session_ = *std::move(session);
-        return absl::OkStatus();
+        return CheckSameRung();
       }
       // Deleted, or the run was killed before it was created: begin anew under the same name.
       if (!absl::IsNotFound(session.status())) return session.status();
@@ -82,6 +84,19 @@ class Run {
       return absl::OkStatus();
     }
     return CreateSession(NewSessionId(options_.scene), scene);
+  }
+
+  // What the folder's session keeps cannot be changed, and what it sends is not mixed in one file.
+  absl::Status CheckSameRung() const {
+    const std::optional<Rung> wanted = options_.accuracy.rung();
+    std::optional<Rung> kept = RungFromMessage(session_.rung());
+    if (!kept && !session_.scene().output().has_tolerance()) kept = Rung::kStandard;
+    if (!wanted || wanted == kept) return absl::OkStatus();
+    return absl::FailedPreconditionError(
+        absl::StrCat(options_.out, ": holds a run that keeps its frames at ",
+                     kept ? absl::StrCat("rung ", std::string(RungName(*kept)))
+                          : absl::StrCat(session_.scene().output().tolerance(), " m"),
+                     "; choose another --out, or pass --fresh to throw that run away"));
   }
 
   absl::Status CreateSession(const std::string& id, const v1::Scene& scene) {
@@ -130,6 +145,7 @@ class Run {
     follow.quiet = options_.quiet;
     follow.recorder = recorder.get();
     follow.events = events.get();
+    follow.begun = [this](const std::string& mesh_asset) { return KeepMesh(mesh_asset); };
     auto result = Follow(client(), program_.interrupt, follow);
     const absl::Status finished = recorder->Finish();
     if (!result.ok() && access_.embedded != nullptr)
@@ -138,10 +154,10 @@ class Run {
     return result;
   }
 
-  absl::Status KeepMesh(const FollowResult& result) {
+  // From the beginning: exports and pictures of a run that goes on, or was killed, need it.
+  absl::Status KeepMesh(const std::string& mesh_asset) {
     if (std::filesystem::exists(folder_.mesh())) return absl::OkStatus();
-    CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh,
-                            SessionMesh(client(), session_.name(), result.mesh_asset));
+    CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh, SessionMesh(client(), session_.name(), mesh_asset));
     return folder_.WriteMesh(mesh);
   }
 

@@ -27,13 +27,21 @@ std::optional<std::string> RunFolder::EarlierSession() const {
 }
 
 absl::Status RunFolder::CheckSameScene(const v1::Scene& wanted) const {
+  using google::protobuf::util::MessageDifferencer;
   const auto earlier = ReadSceneFile(scene());
-  if (earlier.ok() && google::protobuf::util::MessageDifferencer::Equals(earlier->scene, wanted))
-    return absl::OkStatus();
+  if (earlier.ok() && MessageDifferencer::Equals(earlier->scene, wanted)) return absl::OkStatus();
+  bool only_output = false;
+  if (earlier.ok()) {
+    v1::Scene as_kept = wanted;
+    *as_kept.mutable_output() = earlier->scene.output();
+    v1::Scene kept = earlier->scene;
+    kept.mutable_output();
+    only_output = MessageDifferencer::Equals(kept, as_kept);
+  }
   return absl::FailedPreconditionError(
-      absl::StrCat(path_,
-                   ": holds a run of another scene; choose another --out, or pass --fresh "
-                   "to throw that run away"));
+      absl::StrCat(path_, ": holds a run of ",
+                   only_output ? "this scene with another output or --tolerance" : "another scene",
+                   "; choose another --out, or pass --fresh to throw that run away"));
 }
 
 absl::Status RunFolder::WriteScene(const v1::Scene& sent) const {

@@ -43,22 +43,20 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
                             EventFile::Open(folder.events(), last.has_value() ? last->frame : -1));
     follow.recorder = recorder.get();
     follow.events = events.get();
+    follow.begun = [&](const std::string& mesh_asset) -> absl::Status {
+      if (std::filesystem::exists(folder.mesh())) return absl::OkStatus();
+      CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh, SessionMesh(client, follow.session, mesh_asset));
+      CLEAVE_RETURN_IF_ERROR(folder.WriteMesh(mesh));
+      return folder.WriteScene(scene);
+    };
   }
   const auto result = Follow(client, interrupt, follow);
   if (recorder != nullptr) CLEAVE_RETURN_IF_ERROR(recorder->Finish());
   if (!result.ok()) return result.status();
-  if (recorder != nullptr) {
-    if (!std::filesystem::exists(folder.mesh())) {
-      CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh,
-                              SessionMesh(client, follow.session, result->mesh_asset));
-      CLEAVE_RETURN_IF_ERROR(folder.WriteMesh(mesh));
-      CLEAVE_RETURN_IF_ERROR(folder.WriteScene(scene));
-    }
-    if (!options.json) {
-      PrintResult(folder.frames());
-      PrintResult(folder.mesh());
-      PrintResult(folder.events());
-    }
+  if (recorder != nullptr && !options.json) {
+    PrintResult(folder.frames());
+    PrintResult(folder.mesh());
+    PrintResult(folder.events());
   }
   if (result->interrupted && result->end.reason() == v1::END_REASON_UNSPECIFIED)
     return absl::CancelledError(absl::StrCat("left ", follow.session, " after frame ",

@@ -156,6 +156,7 @@ class EmbeddedRuns(CliTest):
         scene, out = self.scene(BLOCK % 150), self.folder / "out"
         code, frames, _ = self.interrupted_run(out, signal.SIGKILL, scene)
         self.assertEqual(code, -signal.SIGKILL)
+        self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
         code, _, errors = cleave("run", scene, "--out", out, "-q", "--frames", frames[-1] + 20)
         self.assertEqual(code, 0, errors)
 

@@ -73,6 +73,7 @@ class Server(CliTest):
         self.assertIn("(preview)", errors)
         code, _, errors = self.ask("run", scene, "--out", self.folder / "run", "--rung", "standard")
         self.assertEqual(code, 7, errors)
+        self.assertIn("keeps its frames at rung preview", errors)
 
     def test_name_taken_by_another_scene_exits_7_and_bad_name_3(self):
         scene = self.scene(BLOCK % 2)

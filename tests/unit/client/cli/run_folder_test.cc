@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "absl/strings/match.h"
 #include "tests/unit/temporary_directory.h"
 
 namespace cleave {
@@ -26,7 +27,19 @@ TEST_F(RunFolderTest, EarlierRunIsFoundAgainWithItsScene) {
   EXPECT_EQ(*folder_.EarlierSession(), "sessions/rod-1");
   EXPECT_TRUE(folder_.CheckSameScene(scene).ok());
   scene.set_seed(1);
-  EXPECT_TRUE(absl::IsFailedPrecondition(folder_.CheckSameScene(scene)));
+  const absl::Status other = folder_.CheckSameScene(scene);
+  EXPECT_TRUE(absl::IsFailedPrecondition(other));
+  EXPECT_TRUE(absl::StrContains(other.message(), "of another scene")) << other;
+}
+
+TEST_F(RunFolderTest, SceneOfAnotherToleranceIsToldFromAnotherScene) {
+  v1::Scene scene;
+  scene.set_seed(1);
+  ASSERT_TRUE(folder_.Begin("sessions/rod-1", scene).ok());
+  scene.mutable_output()->set_tolerance(1e-5);
+  const absl::Status other = folder_.CheckSameScene(scene);
+  EXPECT_TRUE(absl::IsFailedPrecondition(other));
+  EXPECT_TRUE(absl::StrContains(other.message(), "another output or --tolerance")) << other;
 }
 
 TEST_F(RunFolderTest, ClearRemovesOnlyWhatIsItsOwn) {
