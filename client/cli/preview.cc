@@ -26,7 +26,7 @@ struct Options {
   std::string mesh;
   std::string to;
   double unit_scale = 1;
-  std::optional<int64_t> still;
+  std::optional<std::string> still;
   bool sheet = false;
   bool animation = false;
   std::optional<std::string> turntable;
@@ -86,20 +86,16 @@ class Pictures {
   }
 
  private:
-  absl::Status DrawStill(int64_t frame) {
+  absl::Status DrawStill(const std::string& which) {
     // The whole recording, so that stills of one run have one camera.
-    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(frame, "--still"));
+    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(which, "--still"));
     CLEAVE_ASSIGN_OR_RETURN(const Image image,
                             RenderStill(run_.mesh, run_.recording.frames, position, look_));
+    const int64_t frame = run_.recording.rows[static_cast<size_t>(position)].frame;
     return Write(absl::StrFormat("still_%06d.png", frame), image);
   }
   absl::Status DrawTurntable(const std::string& which) {
-    int64_t frame = run_.recording.rows.back().frame;
-    if (which != "last" && !absl::SimpleAtoi(which, &frame)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("--turntable: \"", which, "\" is neither a frame nor last"));
-    }
-    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(frame, "--turntable"));
+    CLEAVE_ASSIGN_OR_RETURN(const int64_t position, PositionOf(which, "--turntable"));
     TurntableOptions turntable;
     turntable.frames_per_second = options_.animation_look.frames_per_second;
     CLEAVE_ASSIGN_OR_RETURN(
@@ -117,8 +113,13 @@ class Pictures {
                              ShowingProgress("drawing the turntable's sheet", program_.interrupt)));
     return Write("turntable.png", sheet);
   }
-  absl::StatusOr<int64_t> PositionOf(int64_t frame, absl::string_view option) const {
+  absl::StatusOr<int64_t> PositionOf(const std::string& which, absl::string_view option) const {
     const auto& rows = run_.recording.rows;
+    int64_t frame = rows.back().frame;
+    if (which != "last" && !absl::SimpleAtoi(which, &frame)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(option, ": \"", which, "\" is neither a frame nor last"));
+    }
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const IndexRow& each) { return each.frame == frame; });
     if (row == rows.end()) {
@@ -179,7 +180,7 @@ void AddPreview(CLI::App& app, Program& program) {
       ->required()
       ->type_name("RUN");
   verb->add_option("--still", options->still, "Draw this frame: still_000012.png")
-      ->type_name("FRAME");
+      ->type_name("FRAME|last");
   verb->add_flag("--sheet", options->sheet, "Draw contact_sheet.png");
   verb->add_flag("--animation", options->animation, "Draw preview.webp");
   verb->add_option("--turntable", options->turntable,

@@ -32,7 +32,8 @@ namespace {
 RunFolder FolderOf(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return RunFolder(path);
-  return RunFolder((std::filesystem::path(path).parent_path() / ".").lexically_normal().string());
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return RunFolder(folder.empty() ? "." : folder);
 }
 
 // The scene of a run, where its folder holds one.
@@ -92,6 +93,9 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   CLEAVE_ASSIGN_OR_RETURN(run.recording, OpenRecording(frames, {run.mesh.rest_positions, edges}));
   if (run.recording.frames.count == 0)
     return absl::FailedPreconditionError(absl::StrCat(frames, ": holds no frames yet"));
+  if (!run.recording.ended)
+    PrintNote(absl::StrCat(frames, ": was cut after frame ", run.recording.rows.back().frame,
+                           ", or is still written"));
   return run;
 }
 

@@ -71,7 +71,7 @@ absl::Status CheckOptions(std::span<const Vec3> points, double aspect,
     faults.Error("up", "must be finite and not zero");
   }
   if (options.azimuth && !std::isfinite(*options.azimuth)) {
-    faults.Error("azimuth", "must be finite");
+    faults.Error("azimuth", absl::StrCat(*options.azimuth, " is not a finite number"));
   }
   if (options.elevation && !(std::abs(*options.elevation) < 89)) {
     faults.Error("elevation", absl::StrCat(*options.elevation, " is outside (-89, 89) degrees"));

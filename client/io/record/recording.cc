@@ -38,6 +38,7 @@ absl::StatusOr<Recording> OpenRecording(const std::string& path, const StreamMes
       Player{std::move(file), *std::move(reader), *std::move(decoder), {}});
   Recording recording;
   recording.header = player->reader.header();
+  recording.ended = player->reader.has_footer();
   for (const auto& [number, position] : newest) {
     player->positions.push_back(position);
     recording.rows.push_back(player->reader.rows()[position]);

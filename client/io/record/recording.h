@@ -18,6 +18,7 @@ struct Recording {
   StreamHeader header;
   std::vector<IndexRow> rows;  // of the frames in `frames`, by ascending frame number
   FrameSource frames;          // keeps the file open for as long as it is held
+  bool ended = true;           // false: nobody ended the file, it was cut or is still written
 };
 
 // Opens a .clv of this mesh. Where a session was rewound, a frame is given as it was last. Errors:

@@ -48,6 +48,8 @@ class EmbeddedRuns(CliTest):
         code, output, errors = cleave("preview", out, "--still", "4", "--width", "64")
         self.assertEqual((code, output), (0, f"{out}/still_000004.png\n"), errors)
         self.assertEqual(cleave("preview", out, "--still", "9")[0], 3)
+        code, output, errors = cleave("preview", out, "--still", "last", "--width", "64")
+        self.assertEqual((code, output), (0, f"{out}/still_000004.png\n"), errors)
 
     def test_render_mesh_is_written_in_place_of_the_surface(self):
         out = self.folder / "out"
@@ -156,7 +158,9 @@ class EmbeddedRuns(CliTest):
         scene, out = self.scene(BLOCK % 150), self.folder / "out"
         code, frames, _ = self.interrupted_run(out, signal.SIGKILL, scene)
         self.assertEqual(code, -signal.SIGKILL)
-        self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        code, _, errors = cleave("export", out, "--format", "ply", "--last", "0")
+        self.assertEqual(code, 0, errors)
+        self.assertIn("was cut after frame", errors)
         code, _, errors = cleave("run", scene, "--out", out, "-q", "--frames", frames[-1] + 20)
         self.assertEqual(code, 0, errors)
 

@@ -63,11 +63,20 @@ class RecorderTest : public testing::Test {
   std::vector<std::string> frames_;
 };
 
+TEST_F(RecorderTest, ARecordingThatNobodyEndedSaysSo) {
+  ASSERT_TRUE(Record(3, false).ok());
+  const auto recording = OpenRecording(path_, rest_);
+  ASSERT_TRUE(recording.ok()) << recording.status();
+  EXPECT_EQ(recording->frames.count, 4);
+  EXPECT_FALSE(recording->ended);
+}
+
 TEST_F(RecorderTest, RecordedFramesPlayBackInAnyOrder) {
   ASSERT_TRUE(Record(kFrames - 1, true).ok());
   const auto recording = OpenRecording(path_, rest_);
   ASSERT_TRUE(recording.ok()) << recording.status();
   EXPECT_EQ(recording->frames.count, kFrames);
+  EXPECT_TRUE(recording->ended);
   for (const int i : {0, 3, 8, 2}) {
     const auto frame = recording->frames.read(i);
     ASSERT_TRUE(frame.ok()) << frame.status();
