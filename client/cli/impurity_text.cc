@@ -29,7 +29,7 @@ std::vector<double> Finite(const google::protobuf::RepeatedField<double>& values
 }  // namespace
 
 std::string ImpurityText(const v1::PreviewImpurityResponse& preview, bool relative) {
-  double least = 0, most = 0;
+  double least = preview.potencies_size() > 0 ? preview.potencies(0) : 0, most = least;
   int64_t impure = 0;
   for (const double potency : preview.potencies()) {
     least = std::min(least, potency);
