@@ -269,6 +269,10 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual({field for field, _ in caught.exception.faults},
                          {"scene.materials[0].poisson_ratio", "scene.materials[0].density"})
 
+    def test_a_server_that_does_not_answer_is_named(self):
+        with self.assertRaisesRegex(CleaveError, "no server answers at unix:/nowhere within 0.1 s"):
+            Client("unix:/nowhere", connect_seconds=0.1)
+
     def test_unknown_session_is_not_found(self):
         with self.assertRaises(CleaveError) as caught:
             self.client.session("nobody")

@@ -52,7 +52,10 @@ def load_scene(path):
 
 
 class Client:
-    """A connection to a server: HOST:PORT or unix:PATH. Use it as a context manager."""
+    """A connection to a server: HOST:PORT or unix:PATH. Use it as a context manager.
+
+    Raises CleaveError (UNAVAILABLE) where no server answers within `connect_seconds`.
+    """
 
     def __init__(self, address, connect_seconds=10):
         self._channel = grpc.insecure_channel(
@@ -71,12 +74,21 @@ class Client:
         self._materials = material_pb2_grpc.MaterialServiceStub(self._channel)
         self._servers = server_pb2_grpc.ServerServiceStub(self._channel)
         self._sessions = session_pb2_grpc.SessionServiceStub(self._channel)
-        self.server = self._call(
-            self._servers.GetServerInfo,
-            server_pb2.GetServerInfoRequest(client_version="cleave python"),
-            seconds=connect_seconds,
-            wait=True,
-        )
+        try:
+            self.server = self._call(
+                self._servers.GetServerInfo,
+                server_pb2.GetServerInfoRequest(client_version="cleave python"),
+                seconds=connect_seconds,
+                wait=True,
+            )
+        except CleaveError as error:
+            self.close()
+            if error.code not in (grpc.StatusCode.DEADLINE_EXCEEDED, grpc.StatusCode.UNAVAILABLE):
+                raise
+            raise CleaveError(
+                grpc.StatusCode.UNAVAILABLE,
+                f"no server answers at {address} within {connect_seconds} s",
+            ) from error
 
     def __enter__(self):
         return self

@@ -28,7 +28,7 @@ class EmbeddedVertices:
 
     rest_positions: nodes x 3, tets: tets x 4 (node ids), vertices: n x 3; m, at rest. After each move,
     positions (n x 3, m) and pieces (n, the smallest node of each vertex's piece) are of that frame.
-    Raises ValueError for arrays of other shapes. Not thread-safe.
+    Raises ValueError for arrays of other shapes and numbers that are not finite. Not thread-safe.
     """
 
     def __init__(self, rest_positions, tets, vertices):
@@ -43,6 +43,10 @@ class EmbeddedVertices:
             raise ValueError(f"tets: a node is outside [0, {len(self._rest)})")
         if self.rest_vertices.ndim != 2 or self.rest_vertices.shape[1] != 3:
             raise ValueError(f"vertices: shape {self.rest_vertices.shape} is not (n, 3)")
+        for name, places in ("rest_positions", self._rest), ("vertices", self.rest_vertices):
+            bad = np.flatnonzero(~np.isfinite(places).all(axis=1))
+            if len(bad) > 0:
+                raise ValueError(f"{name}[{bad[0]}]: {places[bad[0]]} is not finite")
         self._edges = edges_of(self._tets)
         self._keys = self._edges[:, 0] << 32 | self._edges[:, 1]
         self._tet_edges = np.stack(

@@ -82,6 +82,10 @@ class EmbeddedVerticesTest(unittest.TestCase):
             self.fine.move(self.rest, [len(self.edges)])
         with self.assertRaisesRegex(ValueError, "vertices: shape"):
             EmbeddedVertices(self.rest, self.tets, self.vertices[:, :2])
+        with self.assertRaisesRegex(ValueError, r"vertices\[1\]: .* is not finite"):
+            EmbeddedVertices(self.rest, self.tets, [[0, 0, 0], [0, np.nan, 0]])
+        with self.assertRaisesRegex(ValueError, r"rest_positions\[0\]: .* is not finite"):
+            EmbeddedVertices(self.rest * np.inf, self.tets, self.vertices)
         with self.assertRaisesRegex(ValueError, "no positive volume"):
             EmbeddedVertices(self.rest, self.tets[:, [1, 0, 2, 3]], self.vertices)
 
