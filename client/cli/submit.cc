@@ -59,8 +59,10 @@ void AddSubmit(CLI::App& app, Program& program) {
   AddGoalOptions(*verb, options->goal);
   AddAccuracyOptions(*verb, options->accuracy, "that the session keeps, the finest for viewers",
                      "as the scene says, or standard");
-  verb->add_option("--session", options->session,
-                   "Name of the session: a-z, 0-9 and -; default: the scene's name and some digits")
+  verb->add_option(
+          "--session", options->session,
+          "Name of the session: a letter and 2 to 62 of a-z, 0-9 and -; default: the scene's "
+          "name and some digits")
       ->type_name("NAME");
   verb->add_option("--threads", options->threads, "Threads of the solver; 0: as the server is set")
       ->check(CountWithin(0, 1024))

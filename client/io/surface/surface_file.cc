@@ -58,6 +58,7 @@ absl::StatusOr<SurfaceMesh> ParseSurfaceFile(absl::string_view bytes, absl::stri
   if (ending.empty()) {
     return absl::InvalidArgumentError("is not a surface that can be read; .obj, .ply and .stl are");
   }
+  if (bytes.empty()) return absl::InvalidArgumentError("is empty");
   if (bytes.size() > kMaxSurfaceFileBytes) {
     return absl::InvalidArgumentError(
         absl::StrCat("is larger than ", kMaxSurfaceFileBytes >> 20, " MiB"));

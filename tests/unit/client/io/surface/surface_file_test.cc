@@ -147,7 +147,7 @@ TEST(SurfaceFile, WhatIsNoSurfaceIsRefusedByName) {
     return std::string(status.message());
   };
   EXPECT_THAT(refused(kObj, "a.fbx"), HasSubstr(".obj, .ply and .stl are"));
-  EXPECT_THAT(refused("", "a.obj"), HasSubstr("cannot be read as OBJ"));
+  EXPECT_EQ(refused("", "a.obj"), "is empty");
   EXPECT_THAT(refused("ply\nnot really", "a.ply"), HasSubstr("cannot be read as PLY"));
   EXPECT_THAT(refused(BinaryStl().substr(0, 150), "a.stl"), HasSubstr("cannot be read as STL"));
   EXPECT_THAT(refused("v 0 0 0\nv 1 0 0\nl 1 2\n", "a.obj"),
