@@ -1,8 +1,11 @@
 #include "client/cli/scene_input.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -51,8 +54,7 @@ void AppendWarnings(const std::string& prefix, const Faults& faults, std::vector
 }
 
 // Puts what the surface files of colliders hold in the place of their names: servers see no files.
-absl::Status ReadColliderSurfaces(SceneFile& file) {
-  std::vector<Fault> faults;
+void ReadColliderSurfaces(SceneFile& file, std::vector<Fault>& faults) {
   for (int i = 0; i < file.scene.colliders_size(); ++i) {
     v1::Collider& collider = *file.scene.mutable_colliders(i);
     if (collider.surface().file().empty()) continue;
@@ -73,21 +75,25 @@ absl::Status ReadColliderSurfaces(SceneFile& file) {
       shape.mutable_triangles()->Add(triangle.begin(), triangle.end());
     shape.clear_file();
   }
-  if (faults.empty()) return absl::OkStatus();
-  return absl::InvalidArgumentError(file.Describe(faults));
 }
 
-// The rules of the scene alone. A file as mesh stands for the asset that it will be.
-absl::Status CheckScene(SceneInput& input) {
-  Faults faults;
-  input.scene = SceneFromMessage(input.file.scene, faults);
+// The rules of the scene alone, but of fields at fault already. A file as mesh stands for the asset
+// that it will be.
+void CheckScene(SceneInput& input, std::vector<Fault>& faults) {
+  Faults found;
+  input.scene = SceneFromMessage(input.file.scene, found);
   Scene as_sent = input.scene;
   if (std::holds_alternative<MeshFile>(as_sent.mesh.source))
     as_sent.mesh.source = MeshAsset{std::string(64, '0')};
-  faults.Append("", ValidateScene(as_sent));
-  AppendWarnings("", faults, input.warnings);
-  if (faults.ok()) return absl::OkStatus();
-  return absl::InvalidArgumentError(input.file.Describe(faults.errors()));
+  found.Append("", ValidateScene(as_sent));
+  AppendWarnings("", found, input.warnings);
+  const std::vector<Fault> known = faults;
+  std::copy_if(found.errors().begin(), found.errors().end(), std::back_inserter(faults),
+               [&](const Fault& fault) {
+                 return std::none_of(known.begin(), known.end(), [&](const Fault& earlier) {
+                   return earlier.field == fault.field;
+                 });
+               });
 }
 
 absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
@@ -132,14 +138,22 @@ absl::Status FitMessage(SceneInput& input) {
 
 // All that follows the reading of the scene file.
 absl::Status Complete(SceneInput& input) {
-  CLEAVE_RETURN_IF_ERROR(ReadColliderSurfaces(input.file));
+  std::vector<Fault> faults;
+  ReadColliderSurfaces(input.file, faults);
   if (input.file.scene.has_impurities()) {
-    const std::vector<Fault> faults =
+    const std::vector<Fault> of_layers =
         ReadLayerFiles(PathBeside(input.file, ""), *input.file.scene.mutable_impurities());
-    if (!faults.empty()) return absl::InvalidArgumentError(input.file.Describe(faults));
+    faults.insert(faults.end(), of_layers.begin(), of_layers.end());
   }
-  CLEAVE_RETURN_IF_ERROR(CheckScene(input));
+  CheckScene(input, faults);
   const std::string mesh_path = MeshPath(input.file);
+  if (!faults.empty()) {
+    // What is in the mesh waits: it may take long to read.
+    std::error_code error;
+    if (!mesh_path.empty() && !std::filesystem::exists(mesh_path, error))
+      faults.push_back({"mesh.file", absl::StrCat(mesh_path, " is not there")});
+    return absl::InvalidArgumentError(input.file.Describe(faults));
+  }
   if (mesh_path.empty()) return FitMessage(input);
   CLEAVE_ASSIGN_OR_RETURN(input.mesh, ReadMeshFile(mesh_path));
   CLEAVE_RETURN_IF_ERROR(CheckWithMesh(input, mesh_path));

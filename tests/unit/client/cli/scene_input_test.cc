@@ -59,6 +59,24 @@ TEST_F(SceneInputTest, FaultsOfValuesNameTheirLine) {
                              HasSubstr(path + ":4: materials[0].density: -1")));
 }
 
+TEST_F(SceneInputTest, MissingFilesAreNamedTogetherWithWrongValues) {
+  const std::string path = Write(
+      "a.scene.json",
+      "{\"mesh\": {\"file\": \"none.msh\"},\n"
+      "\"materials\": [{\"youngs_modulus\": -1, \"poisson_ratio\": 0.3, \"density\": 1}],\n"
+      "\"colliders\": [{\"name\": \"a\", \"surface\": {\"file\": \"none.obj\"}}],\n"
+      "\"impurities\": {\"layers\": [{\"potency\": 1, \"paint\": {\"file\": \"none.ply\"}}]}}");
+  const absl::Status status = LoadScene(path).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  EXPECT_THAT(std::string(status.message()),
+              testing::AllOf(HasSubstr(path + ":1: mesh.file: "),
+                             HasSubstr(path + ":2: materials[0].youngs_modulus: -1"),
+                             HasSubstr(path + ":3: colliders[0].surface.file: "),
+                             HasSubstr(path + ":4: impurities.layers[0].paint.file: ")));
+  // Each once, though servers refuse files for another reason.
+  EXPECT_THAT(std::string(status.message()), testing::Not(HasSubstr("path of the client")));
+}
+
 TEST_F(SceneInputTest, MissingMeshFileIsNamed) {
   const std::string path =
       Write("a.scene.json", absl::StrCat("{\"mesh\": {\"file\": \"none.msh\"}, ", kMaterial, "}"));
