@@ -1,6 +1,7 @@
 #include "core/stream/frame_decoder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -214,6 +215,7 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
     if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
     next.positions = state_.positions;
     next.exact = state_.exact;
+    next.shifts = state_.shifts;
     next.residuals = state_.residuals;
   } else if (interpolation_.has_value()) {
     CLEAVE_RETURN_IF_ERROR(
@@ -226,6 +228,15 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   }
   Accept(next, frame);
   return absl::OkStatus();
+}
+
+std::vector<double> FrameDecoder::Tolerances() const {
+  std::vector<double> tolerances(header_.node_count, state_.tolerance);
+  for (size_t place = 0; place < state_.shifts.size(); ++place) {
+    const auto node = static_cast<size_t>(interpolation_->order().nodes[place]);
+    tolerances[node] = std::ldexp(state_.tolerance, state_.shifts[place]);
+  }
+  return tolerances;
 }
 
 void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {

@@ -49,6 +49,9 @@ class FrameDecoder {
   // predictor 3 those that were encoded. Without one,
   // frame().frame is -1.
   const Frame& frame() const { return frame_; }
+  // Of each node, m: the largest error that its coordinates in frame() may have. More than the
+  // frame's tolerance only outside of a region of interest.
+  std::vector<double> Tolerances() const;
   uint32_t epoch() const { return state_.epoch; }
   // Of the last applied frame; with (epoch, frame) it names where to resume. 0 without one.
   uint64_t state_hash() const { return state_hash_; }

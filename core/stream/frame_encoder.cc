@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/faults.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/stream/exact_positions.h"
@@ -61,6 +62,11 @@ absl::StatusOr<FrameEncoder> FrameEncoder::Create(const StreamHeader& header,
         residuals.activities.size() != rest_positions.size()) {
       return absl::FailedPreconditionError("the state to go on from is of another coder");
     }
+    if (header.has_regions() && encoder.state_.frame >= 0 &&
+        encoder.state_.shifts.size() != rest_positions.size()) {
+      return absl::FailedPreconditionError(
+          "the state to go on from is of a stream without regions");
+    }
     encoder.interpolation_.emplace(header, mesh);
     encoder.labels_.emplace(encoder.interpolation_->order(), encoder.interpolation_->stencils(),
                             mesh.edges);
@@ -85,10 +91,47 @@ absl::Status FrameEncoder::StartEpoch(uint32_t epoch) {
 absl::Status FrameEncoder::SetTolerance(double tolerance) {
   CLEAVE_RETURN_IF_ERROR(CheckTolerance(tolerance, header_));
   tolerance_ = tolerance;
+  PlaceRegion();
   if (interpolation_.has_value() || exact()) return absl::OkStatus();
   rest_ = QuantiseRest(rest_positions_, header_.origin,
                        QuantisationStep(tolerance_, header_.domain_bound));
   return absl::OkStatus();
+}
+
+absl::Status FrameEncoder::SetRegion(std::optional<Region> region) {
+  if (region.has_value()) {
+    Faults faults;
+    if (!header_.has_regions()) faults.Error("region", "the stream has none");
+    if (!(region->outside_tolerance >= 2 * tolerance_ && region->outside_tolerance <= 1e9)) {
+      faults.Error("outside_tolerance", absl::StrCat(region->outside_tolerance, " is outside [",
+                                                     2 * tolerance_, ", 1e9]"));
+    }
+    for (size_t at = 0; at < region->nodes.size(); ++at) {
+      const int64_t node = region->nodes[at];
+      if (node >= 0 && node < static_cast<int64_t>(header_.node_count)) continue;
+      faults.Error(absl::StrCat("nodes[", at, "]"),
+                   absl::StrCat(node, " is outside [0, ", header_.node_count, ")"));
+    }
+    for (size_t axis = 0; region->box.has_value() && axis < 3; ++axis) {
+      const auto& [low, high] = *region->box;
+      if (low[axis] <= high[axis]) continue;
+      faults.Error("box", absl::StrCat("from ", low[axis], " to ", high[axis], " m has no inside"));
+    }
+    CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
+  }
+  region_ = std::move(region);
+  PlaceRegion();
+  return absl::OkStatus();
+}
+
+void FrameEncoder::PlaceRegion() {
+  if (!interpolation_.has_value()) return;
+  if (!region_.has_value()) {
+    interpolation_->ClearRegion();
+    return;
+  }
+  const int power = std::ilogb(region_->outside_tolerance / tolerance_);
+  interpolation_->SetRegion(*region_, std::clamp(power, 0, kMaxShift));
 }
 
 absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
@@ -296,6 +339,7 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     if (interpolation_.has_value()) {
       interpolation_->Encode(key, state_, header, body, next_, next_residuals_);
       std::swap(state_.residuals, next_residuals_);
+      if (header_.has_regions()) interpolation_->GetShifts(state_.shifts);
     } else if (exact()) {
       AppendExactPositions(header_, key, exact_rest_, state_, next_exact_, header, body);
     } else {
@@ -306,8 +350,10 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     if (interpolation_.has_value()) return interpolation_->AllHold(state_);
     return exact() ? next_exact_ == state_.exact : next_ == state_.positions;
   };
+  const auto set_broken = [&] { interpolation_->SetBroken(frame.broken_edges, state_); };
+  if (header_.has_regions()) set_broken();  // what holds depends on the pieces
   const bool holds = !key && !breaks && all_hold();
-  if (interpolation_.has_value() && !holds) interpolation_->SetBroken(frame.broken_edges, state_);
+  if (interpolation_.has_value() && !header_.has_regions() && !holds) set_broken();
   if (key) {
     header.kind = FrameKind::kKey;
     AppendCheckpoint(frame.broken_edges, header, body);

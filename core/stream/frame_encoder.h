@@ -14,6 +14,7 @@
 #include "core/stream/frame_header.h"
 #include "core/stream/interpolation_encoder.h"
 #include "core/stream/piece_labels.h"
+#include "core/stream/region.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_mesh.h"
 #include "core/stream/stream_state.h"
@@ -58,11 +59,17 @@ class FrameEncoder {
   // MakeStreamHeader.
   absl::Status SetTolerance(double tolerance);
 
+  // From the next frame on, in a stream with regions: pieces outside may be as coarse as the region
+  // says, those inside keep the tolerance; each frame tells which are which. None: all keep it. An
+  // encoder that goes on from a state has none until it is told. Error: InvalidArgument.
+  absl::Status SetRegion(std::optional<Region> region);
+
   // After the last encoded frame. Feed it to Create to go on elsewhere.
   const StreamState& state() const { return state_; }
 
  private:
   FrameEncoder() = default;
+  void PlaceRegion();
   bool exact() const { return header_.predictor_id == kPredictorExact; }
   absl::Status CheckFrame(const Frame& frame) const;
   absl::Status Quantise(const std::vector<Vec3>& positions);
@@ -79,6 +86,7 @@ class FrameEncoder {
   std::vector<int64_t> exact_rest_;   // ranks, with predictor 3
   double tolerance_ = 0;              // m, of the next frame
   uint32_t epoch_ = 0;                // of the next frame
+  std::optional<Region> region_;      // of the next frame
   StreamState state_;
   std::vector<int32_t> next_;                          // quantised positions of the frame in work
   std::vector<int64_t> next_exact_;                    // ranks of them, with predictor 3

@@ -12,11 +12,36 @@ namespace {
 
 constexpr uint8_t kSomeHold = 1;
 constexpr uint8_t kHasClasses = 2;
+constexpr uint8_t kSomeAreCoarse = 4;
 
 constexpr auto kListed = static_cast<uint8_t>(kNamedContinuations.size());
 
 size_t LargestMotion(int64_t pieces, int64_t groups) {
-  return 1 + (static_cast<size_t>(pieces) + 7) / 8 + 8 * static_cast<size_t>(groups);
+  return 2 + 2 * ((static_cast<size_t>(pieces) + 7) / 8) + 8 * static_cast<size_t>(groups);
+}
+
+// A bit for each piece, the first lowest.
+void PutBits(const std::vector<uint8_t>& flags, ByteWriter& writer) {
+  for (size_t piece = 0; piece < flags.size(); piece += 8) {
+    unsigned bits = 0;
+    for (size_t bit = 0; bit < std::min<size_t>(8, flags.size() - piece); ++bit) {
+      bits |= unsigned{flags[piece + bit]} << bit;
+    }
+    writer.Put(static_cast<uint8_t>(bits));
+  }
+}
+
+// The reverse; false if what fills the last byte is not zero.
+bool GetBits(ByteReader& reader, int64_t pieces, std::vector<uint8_t>& flags) {
+  bool fits = true;
+  flags.resize(static_cast<size_t>(pieces));
+  for (size_t piece = 0; piece < flags.size(); piece += 8) {
+    const unsigned bits = reader.Get<uint8_t>();
+    const size_t there = std::min<size_t>(8, flags.size() - piece);
+    for (size_t bit = 0; bit < there; ++bit) flags[piece + bit] = bits >> bit & 1;
+    fits &= bits >> there == 0;
+  }
+  return fits;
 }
 
 }  // namespace
@@ -26,14 +51,11 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   std::string raw;
   ByteWriter writer(raw);
   writer.Put<uint8_t>(static_cast<uint8_t>((motion.held.empty() ? 0 : kSomeHold) |
-                                           (motion.classes.empty() ? 0 : kHasClasses)));
-  for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
-    unsigned bits = 0;
-    for (size_t bit = 0; bit < std::min<size_t>(8, motion.held.size() - piece); ++bit) {
-      bits |= unsigned{motion.held[piece + bit]} << bit;
-    }
-    writer.Put(static_cast<uint8_t>(bits));
-  }
+                                           (motion.classes.empty() ? 0 : kHasClasses) |
+                                           (motion.coarse.empty() ? 0 : kSomeAreCoarse)));
+  PutBits(motion.held, writer);
+  if (!motion.coarse.empty()) writer.Put(motion.shift);
+  PutBits(motion.coarse, writer);
   if (!key) {
     for (const Continuation& by : motion.continuations) {
       const auto named = std::find(kNamedContinuations.begin(), kNamedContinuations.end(), by);
@@ -55,8 +77,9 @@ void AppendMotion(bool key, const FrameMotion& motion, int64_t groups, FrameHead
   ++header.section_count;
 }
 
-absl::StatusOr<FrameMotion> ReadMotion(bool key, bool rans, const Section& section, int64_t pieces,
-                                       int64_t groups) {
+absl::StatusOr<FrameMotion> ReadMotion(bool key, const StreamHeader& stream, const Section& section,
+                                       int64_t pieces, int64_t groups) {
+  const bool rans = stream.coder_id == kCoderContextRans;
   if (section.type != SectionType::kMotion || section.coder != kCoderZstdPlanes ||
       section.prediction != Prediction::kNone || section.first != 0 || section.count != groups ||
       section.raw_bytes == 0 || section.raw_bytes > LargestMotion(pieces, groups)) {
@@ -69,16 +92,13 @@ absl::StatusOr<FrameMotion> ReadMotion(bool key, bool rans, const Section& secti
   const auto flags = reader.Get<uint8_t>();
   const bool some_hold = (flags & kSomeHold) != 0;
   const bool has_classes = (flags & kHasClasses) != 0;
-  bool fits = flags <= (kSomeHold | kHasClasses) && !(key && some_hold) &&
-              (has_classes ? rans : !(key && rans));
-  if (some_hold) {
-    motion.held.resize(static_cast<size_t>(pieces));
-    for (size_t piece = 0; piece < motion.held.size(); piece += 8) {
-      const unsigned bits = reader.Get<uint8_t>();
-      const size_t there = std::min<size_t>(8, motion.held.size() - piece);
-      for (size_t bit = 0; bit < there; ++bit) motion.held[piece + bit] = bits >> bit & 1;
-      fits &= bits >> there == 0;
-    }
+  const int known = kSomeHold | kHasClasses | (stream.has_regions() ? kSomeAreCoarse : 0);
+  bool fits = (flags & ~known) == 0 && !(key && some_hold) && (has_classes ? rans : !(key && rans));
+  if (some_hold) fits &= GetBits(reader, pieces, motion.held);
+  if (fits && (flags & kSomeAreCoarse) != 0) {
+    motion.shift = reader.Get<uint8_t>();
+    fits &= motion.shift >= 1 && motion.shift <= kMaxShift;
+    fits &= GetBits(reader, pieces, motion.coarse);
   }
   motion.continuations.assign(static_cast<size_t>(groups), kFromRest);
   if (!key) {

@@ -57,7 +57,7 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
   const bool rans = header_.coder_id == kCoderContextRans;
   CLEAVE_ASSIGN_OR_RETURN(
       const FrameMotion motion,
-      ReadMotion(key, rans, sections[0], pieces.count(), predictor_.order().groups()));
+      ReadMotion(key, header_, sections[0], pieces.count(), predictor_.order().groups()));
 
   std::optional<ResidualCoder> coder;
   if (rans) {
@@ -109,16 +109,33 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
     return motion.continuations[static_cast<size_t>(group)];
   };
   const auto holds = [&](int32_t place) { return motion.Holds(pieces[place]); };
-  const auto correct = [&](int32_t place, Double4 prediction) {
-    const Double4 position =
-        prediction + kUnitsPerStep * Widen(residuals_[static_cast<size_t>(place)]);
+  const auto corrected = [&](int32_t place, Double4 prediction, double units) {
+    const Double4 position = prediction + units * Widen(residuals_[static_cast<size_t>(place)]);
     if (Any(Abs(position) > kMaxQuantised)) {
       all_fit.store(false, std::memory_order_relaxed);
       return Double4{};
     }
     return position;
   };
-  predictor_.Run(key, state.positions, state.previous, next.positions, choose, holds, correct);
+  const auto run = [&](const auto& correct) {
+    predictor_.Run(key, state.positions, state.previous, next.positions, choose, holds, correct);
+  };
+  if (motion.coarse.empty()) {
+    run([&](int32_t place, Double4 prediction) {
+      return corrected(place, prediction, kUnitsPerStep);
+    });
+  } else {
+    run([&](int32_t place, Double4 prediction) {
+      return corrected(place, prediction, kUnitsPerStep << motion.ShiftOf(pieces[place]));
+    });
+  }
+  if (header_.has_regions()) {
+    next.shifts.resize(nodes);
+    for (size_t place = 0; place < nodes; ++place) {
+      next.shifts[place] =
+          static_cast<uint8_t>(motion.ShiftOf(pieces[static_cast<int32_t>(place)]));
+    }
+  }
   return all_fit.load() ? absl::OkStatus()
                         : absl::DataLossError("a decoded coordinate is out of range");
 }

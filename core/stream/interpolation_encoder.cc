@@ -21,9 +21,6 @@ namespace {
 constexpr int64_t kGrainNodes = 4096;
 constexpr int32_t kMaxSamples = 96;  // places a group that a continuation is fitted to
 
-// Targets leave room for the rounding to a residual.
-constexpr double kMaxTarget = kMaxQuantised - kUnitsPerStep;
-
 }  // namespace
 
 InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const StreamMesh& mesh)
@@ -35,9 +32,75 @@ InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const Str
   samples_.reserve(2 * kMaxSamples);
 }
 
+void InterpolationEncoder::SetRegion(const Region& region, int32_t shift) {
+  const std::vector<int32_t>& nodes = predictor_.order().nodes;
+  std::vector<int32_t> places(nodes.size());
+  for (size_t place = 0; place < nodes.size(); ++place) {
+    places[static_cast<size_t>(nodes[place])] = static_cast<int32_t>(place);
+  }
+  region_ = PlacedRegion{.places = {}, .box = region.box, .shift = static_cast<uint8_t>(shift)};
+  for (const int32_t node : region.nodes) {
+    region_->places.push_back(places[static_cast<size_t>(node)]);
+  }
+}
+
+// Targets leave room for the rounding to a residual.
+double InterpolationEncoder::LargestTarget() const {
+  return kMaxQuantised - (kUnitsPerStep << (region_.has_value() ? region_->shift : 0));
+}
+
+// Which pieces are outside of the region.
+void InterpolationEncoder::ChooseCoarse() {
+  motion_.coarse.clear();
+  if (!region_.has_value() || region_->shift == 0) return;
+  const Pieces& pieces = predictor_.pieces();
+  motion_.shift = region_->shift;
+  motion_.coarse.assign(static_cast<size_t>(pieces.count()), 1);
+  const auto include = [&](int32_t place) {
+    motion_.coarse[static_cast<size_t>(pieces[place])] = 0;
+  };
+  for (const int32_t place : region_->places) include(place);
+  if (region_->box.has_value()) {
+    const double inverse_unit = 1.0 / header_.UnitOf(tolerance_);
+    std::array<Double4, 2> box{};
+    for (size_t corner = 0; corner < 2; ++corner) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        box[corner][static_cast<int>(axis)] =
+            ((*region_->box)[corner][axis] - header_.origin[axis]) * inverse_unit;
+      }
+    }
+    for (size_t place = 0; place < targets_.size(); ++place) {
+      const Double4 target = targets_[place];
+      if (!Any(target < box[0]) && !Any(target > box[1])) include(static_cast<int32_t>(place));
+    }
+  }
+  if (std::find(motion_.coarse.begin(), motion_.coarse.end(), 1) == motion_.coarse.end()) {
+    motion_.coarse.clear();
+  }
+}
+
+int32_t InterpolationEncoder::ShiftOf(size_t place) const {
+  return motion_.coarse.empty() ? 0 : motion_.ShiftOf(predictor_.pieces().labels()[place]);
+}
+
+bool InterpolationEncoder::ShiftsAre(const std::vector<uint8_t>& shifts) const {
+  for (size_t place = 0; place < targets_.size(); ++place) {
+    if (shifts[place] != ShiftOf(place)) return false;
+  }
+  return true;
+}
+
+void InterpolationEncoder::GetShifts(std::vector<uint8_t>& shifts) const {
+  shifts.resize(targets_.size());
+  for (size_t place = 0; place < targets_.size(); ++place) {
+    shifts[place] = static_cast<uint8_t>(ShiftOf(place));
+  }
+}
+
 absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions,
                                               double tolerance) {
   const double inverse_unit = 1.0 / header_.UnitOf(tolerance);
+  const double largest = LargestTarget();
   const Vec3 origin = header_.origin;
   const std::vector<int32_t>& nodes = predictor_.order().nodes;
   std::atomic<bool> all_fit{true};
@@ -56,7 +119,7 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
         std::memcpy(&position, &x, sizeof(position));
       }
       const Double4 target = (position - corner) * scale;
-      fits &= (target <= kMaxTarget) & (target >= -kMaxTarget);
+      fits &= (target <= largest) & (target >= -largest);
       targets_[place] = target;
     }
     const bool fit = !Any(~fits);
@@ -67,12 +130,12 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
       const Vec3& x = positions[node];
       bool fit = true;
       for (size_t axis = 0; axis < 3; ++axis) {
-        fit &= std::abs((x[axis] - origin[axis]) * inverse_unit) <= kMaxTarget;
+        fit &= std::abs((x[axis] - origin[axis]) * inverse_unit) <= largest;
       }
       if (fit) continue;
       return absl::OutOfRangeError(
           absl::StrCat("POSITION_OUT_OF_RANGE: node ", node, " at (", x[0], ", ", x[1], ", ", x[2],
-                       ") m is not finite or farther than ", kMaxTarget / inverse_unit, " m from (",
+                       ") m is not finite or farther than ", largest / inverse_unit, " m from (",
                        origin[0], ", ", origin[1], ", ", origin[2],
                        "), which is what a tolerance of ", tolerance, " m can reach"));
     }
@@ -81,16 +144,19 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
   return absl::OkStatus();
 }
 
-bool InterpolationEncoder::Stays(const StreamState& state, size_t place) const {
+bool InterpolationEncoder::Stays(const StreamState& state, size_t place, int32_t shift) const {
   const int32_t* last = state.positions.data() + 3 * place;
   const Double4 from = {static_cast<double>(last[0]), static_cast<double>(last[1]),
                         static_cast<double>(last[2]), 0};
-  return !Any(Abs(targets_[place] - from) > kUnitsPerStep / 2);
+  return !Any(Abs(targets_[place] - from) > (kUnitsPerStep << shift) / 2);
 }
 
-bool InterpolationEncoder::AllHold(const StreamState& state) const {
+bool InterpolationEncoder::AllHold(const StreamState& state) {
+  ChooseCoarse();
+  // A hold has no motion to say what is coarse.
+  if (header_.has_regions() && !ShiftsAre(state.shifts)) return false;
   for (size_t place = 0; place < targets_.size(); ++place) {
-    if (!Stays(state, place)) return false;
+    if (!Stays(state, place, ShiftOf(place))) return false;
   }
   return true;
 }
@@ -100,8 +166,9 @@ void InterpolationEncoder::ChooseHolds(const StreamState& state) {
   motion_.held.assign(static_cast<size_t>(pieces.count()), 1);
   int32_t left = pieces.count();
   for (size_t place = 0; place < targets_.size() && left > 0; ++place) {
-    uint8_t& held = motion_.held[static_cast<size_t>(pieces.labels()[place])];
-    if (held == 0 || Stays(state, place)) continue;
+    const int32_t piece = pieces.labels()[place];
+    uint8_t& held = motion_.held[static_cast<size_t>(piece)];
+    if (held == 0 || Stays(state, place, motion_.ShiftOf(piece))) continue;
     held = 0;
     --left;
   }
@@ -132,6 +199,7 @@ void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeade
                                   std::string& body, std::vector<int32_t>& next,
                                   ResidualHistory& next_history) {
   motion_.held.clear();
+  ChooseCoarse();
   if (!key) ChooseHolds(state);
   motion_.continuations.clear();
   next.resize(3 * targets_.size());
@@ -140,13 +208,25 @@ void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeade
     return motion_.continuations.back();
   };
   const auto holds = [&](int32_t place) { return motion_.Holds(predictor_.pieces()[place]); };
-  const auto correct = [&](int32_t place, Double4 prediction) {
+  const auto corrected = [&](int32_t place, Double4 prediction, double units) {
     const Double4 steps =
-        Floor((targets_[static_cast<size_t>(place)] - prediction) * (1.0 / kUnitsPerStep) + 0.5);
+        Floor((targets_[static_cast<size_t>(place)] - prediction) * (1.0 / units) + 0.5);
     residuals_[static_cast<size_t>(place)] = ToInts(steps);
-    return prediction + kUnitsPerStep * steps;
+    return prediction + units * steps;
   };
-  predictor_.Run(key, state.positions, state.previous, next, choose, holds, correct);
+  const auto run = [&](const auto& correct) {
+    predictor_.Run(key, state.positions, state.previous, next, choose, holds, correct);
+  };
+  if (motion_.coarse.empty()) {
+    run([&](int32_t place, Double4 prediction) {
+      return corrected(place, prediction, kUnitsPerStep);
+    });
+  } else {
+    run([&](int32_t place, Double4 prediction) {
+      const int32_t shift = motion_.ShiftOf(predictor_.pieces()[place]);
+      return corrected(place, prediction, kUnitsPerStep << shift);
+    });
+  }
   motion_.classes.clear();
   std::optional<ResidualCoder> coder;
   if (header_.coder_id == kCoderContextRans) {

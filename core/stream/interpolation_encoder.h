@@ -1,7 +1,9 @@
 #ifndef CLEAVE_CORE_STREAM_INTERPOLATION_ENCODER_H_
 #define CLEAVE_CORE_STREAM_INTERPOLATION_ENCODER_H_
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "core/stream/frame_motion.h"
 #include "core/stream/interpolation_predictor.h"
 #include "core/stream/rans.h"
+#include "core/stream/region.h"
 #include "core/stream/residual_coder.h"
 #include "core/stream/stream_header.h"
 #include "core/stream/stream_state.h"
@@ -35,17 +38,26 @@ class InterpolationEncoder {
   // OutOfRange for a coordinate that is not on the grid, naming the first such node.
   absl::Status SetTargets(const std::vector<Vec3>& positions, double tolerance);
 
-  // True if every node may stay where `state` has it.
-  bool AllHold(const StreamState& state) const;
+  // From the next targets on. What is not in the region may be coarser by 2 to the power of
+  // `shift`.
+  void SetRegion(const Region& region, int32_t shift);
+  void ClearRegion() { region_.reset(); }
 
   // Brings stencils and pieces to the broken edges of the frame whose targets are set and that
   // follows `state`.
   void SetBroken(std::span<const int32_t> broken, const StreamState& state);
 
+  // True if every node may stay where `state` has it, and as coarse. Precondition: no edge has
+  // broken since; in a stream with regions, SetBroken was called for the frame.
+  bool AllHold(const StreamState& state);
+
   // Appends the motion and positions sections of that frame, a key or delta, and gives the
   // positions and the history that a decoder will have.
   void Encode(bool key, const StreamState& state, FrameHeader& header, std::string& body,
               std::vector<int32_t>& next, ResidualHistory& next_history);
+
+  // Of each place in that frame, in streams with regions: FrameMotion::ShiftOf.
+  void GetShifts(std::vector<uint8_t>& shifts) const;
 
   // The frame that was encoded, or a hold, is now the last.
   void Accept(FrameKind kind);
@@ -59,7 +71,16 @@ class InterpolationEncoder {
     std::string coded;
     SymbolCounts counts;
   };
-  bool Stays(const StreamState& state, size_t place) const;
+  struct PlacedRegion {
+    std::vector<int32_t> places;
+    std::optional<std::array<Vec3, 2>> box;
+    uint8_t shift;
+  };
+  double LargestTarget() const;
+  void ChooseCoarse();
+  int32_t ShiftOf(size_t place) const;
+  bool ShiftsAre(const std::vector<uint8_t>& shifts) const;
+  bool Stays(const StreamState& state, size_t place, int32_t shift) const;
   void ChooseHolds(const StreamState& state);
   Continuation Choose(int64_t group);
   void AppendPositions(const ResidualCoder* coder, FrameHeader& header, std::string& body,
@@ -67,6 +88,7 @@ class InterpolationEncoder {
 
   StreamHeader header_;
   InterpolationPredictor predictor_;
+  std::optional<PlacedRegion> region_;
   bool history_is_new_ = true;
   double tolerance_ = 0;            // m, of the targets
   std::vector<Double4> targets_;    // grid units, by place: x, y, z, 0

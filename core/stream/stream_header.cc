@@ -36,7 +36,7 @@ bool IsKnown(const StreamHeader& header) {
   const bool interpolation =
       header.order_id == kOrderMortonLevel && header.predictor_id == kPredictorInterpolation;
   const bool exact = header.order_id == kOrderClient && header.predictor_id == kPredictorExact;
-  return header.view_id == kViewState &&
+  return header.view_id == kViewState && (interpolation || !header.has_regions()) &&
          (((temporal || exact) && header.coder_id == kCoderZstdPlanes) ||
           (interpolation &&
            (header.coder_id == kCoderZstdPlanes || header.coder_id == kCoderContextRans)));
@@ -64,6 +64,9 @@ void CheckValues(const StreamHeader& header, Faults& faults) {
     CheckRange("bbox_min", header.bbox_min[axis], -1e12, 1e12, faults);
     CheckRange("bbox_max", header.bbox_max[axis], header.bbox_min[axis], 1e12, faults);
     CheckRange("origin", header.origin[axis], header.bbox_min[axis], header.bbox_max[axis], faults);
+  }
+  if (header.has_regions() && header.predictor_id != kPredictorInterpolation) {
+    faults.Error("regions", "only predictor 2 can code pieces apart");
   }
   CheckRange("domain_bound", header.domain_bound, 0, 0x1p22 * header.tolerance, faults);
   if (!faults.ok()) return;
@@ -163,6 +166,7 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
   header.tolerance = parameters.tolerance;
   header.predictor_id = parameters.predictor_id;
   header.coder_id = parameters.coder_id;
+  header.required_features = parameters.regions ? kFeatureRegions : 0;
   header.order_id =
       parameters.predictor_id == kPredictorInterpolation ? kOrderMortonLevel : kOrderClient;
 

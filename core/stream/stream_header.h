@@ -25,7 +25,8 @@ inline constexpr uint16_t kPredictorExact = 3;          // as 1, to the bit; tol
 inline constexpr uint16_t kCoderZstdPlanes = 1;         // zstd over byte planes
 inline constexpr uint16_t kCoderContextRans = 2;        // residual_coder.h; needs predictor 2
 inline constexpr uint16_t kViewState = 1;               // every node and every broken edge
-inline constexpr uint64_t kKnownRequiredFeatures = 0;
+inline constexpr uint64_t kFeatureRegions = 1;  // some pieces may be coarser; needs predictor 2
+inline constexpr uint64_t kKnownRequiredFeatures = kFeatureRegions;
 
 // What holds for a whole stream; FORMAT.md, section "Stream header".
 struct StreamHeader {
@@ -56,6 +57,7 @@ struct StreamHeader {
   double step() const;
   double diagonal() const;  // m, of the rest bounding box
   double UnitOf(double tolerance) const;
+  bool has_regions() const { return (required_features & kFeatureRegions) != 0; }
 };
 
 // What the maker of a stream chooses.
@@ -70,6 +72,7 @@ struct StreamParameters {
   uint32_t chunk_nodes = 16384;     // [1, 65536]; 16384 keeps every section below 256 KiB
   uint16_t predictor_id = kPredictorTemporal;
   uint16_t coder_id = kCoderZstdPlanes;
+  bool regions = false;  // its encoder may be given a region of interest; needs predictor 2
 };
 
 // Sets the ids that code a body with these rest positions (m) best at the parameters' tolerance:

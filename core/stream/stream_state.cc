@@ -19,6 +19,7 @@ uint64_t HashStreamState(absl::string_view header_bytes, const StreamState& stat
   hash.Update(state.positions.data(), state.positions.size() * sizeof(int32_t));
   hash.Update(state.exact.data(), state.exact.size() * sizeof(int64_t));
   hash.Update(state.broken_edges.data(), state.broken_edges.size() * sizeof(int32_t));
+  hash.Update(state.shifts.data(), state.shifts.size());
   return hash.Digest();
 }
 

@@ -29,7 +29,10 @@ struct StreamState {
   std::vector<int64_t> previous_exact;
   bool has_previous = false;
   std::vector<int32_t> broken_edges;  // ascending
-  ResidualHistory residuals;          // with coder 2
+  // Of each place: its tolerance is that of the frame times 2 to this power. In streams with
+  // regions.
+  std::vector<uint8_t> shifts;
+  ResidualHistory residuals;  // with coder 2
 };
 
 // Coordinates stay within this, so that a linear continuation and its residual fit.
@@ -37,6 +40,9 @@ inline constexpr int32_t kMaxQuantised = (1 << 30) - 1;
 
 // Residuals of predictor 2 are whole steps, its coordinates 64ths of a step.
 inline constexpr int32_t kUnitsPerStep = 64;
+
+// Pieces outside of a region of interest are coarser by up to this power of two.
+inline constexpr int32_t kMaxShift = 20;
 
 // XXH3-64 of the stream header's bytes and the state; FORMAT.md, "State hash".
 uint64_t HashStreamState(absl::string_view header_bytes, const StreamState& state);

@@ -12,6 +12,8 @@ KEY, DELTA, HOLD = 1, 2, 3
 TOPOLOGY_DELTA, TOPOLOGY_CHECKPOINT, POSITIONS, MOTION, LABELS = 1, 2, 3, 4, 5
 _KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1), (1, 3, 1, 1))  # order, predictor, coder, view
 
+_REGIONS = 1  # required feature
+
 
 class StreamError(Exception):
     """What a stream can do wrong."""
@@ -48,6 +50,7 @@ class StreamHeader:
     bbox_min: tuple
     bbox_max: tuple
     origin: tuple
+    regions: bool
 
     _LAYOUT = struct.Struct("<4sHHIIQQ32s32sQQQHHHHIIddd3d3d3d")
 
@@ -74,7 +77,7 @@ class StreamHeader:
             raise DamagedError("stream header fails its checksum")
         values = cls._LAYOUT.unpack_from(data)
         required, ids = values[5], values[12:16]
-        if required != 0:
+        if required & ~_REGIONS:
             raise UnsupportedError(f"stream needs features that are not known: {required:#x}")
         at = 252
         while at < len(data) - 4:
@@ -86,7 +89,7 @@ class StreamHeader:
                 raise DamagedError("stream header has a truncated extension")
             if not kind & 0x8000:
                 raise UnsupportedError(f"stream header extension {kind} is required, not known")
-        if ids not in _KNOWN_IDS:
+        if ids not in _KNOWN_IDS or (required & _REGIONS and ids[1] != 2):
             raise UnsupportedError(f"order, predictor, coder, view are {ids}: not known together")
         header = cls(
             *values[7:12],
@@ -95,6 +98,7 @@ class StreamHeader:
             values[21:24],
             values[24:27],
             values[27:30],
+            required & _REGIONS != 0,
         )
         header._check()
         return header

@@ -11,6 +11,7 @@ from cleave.residuals import CLASSES, GOES_ON
 
 MAX_QUANTISED = 2**30 - 1
 UNITS_PER_STEP = 64
+MAX_SHIFT = 20
 
 _STENCIL = 8
 _ENOUGH_NEAR = 7
@@ -259,27 +260,27 @@ def _weights(there, offsets, squares):
 
 
 class Motion:
-    """Section 6.4. holds: whether each piece does; continuations: (a, b, c) of each group;
-    classes: of each group, with coder 2, or None."""
+    """Section 6.4. holds: whether each piece does; shifts: by how many powers of two each piece is
+    coarser; continuations: (a, b, c) of each group; classes: of each group, with coder 2, or None."""
 
     _NAMED = ((64, 0, 0), (128, -64, 0), (96, -32, 0), (0, 0, 64))
 
-    def __init__(self, raw, key, rans, pieces, groups):
+    def __init__(self, raw, key, rans, regions, pieces, groups):
         """Raises ValueError for bytes that are not a motion."""
         self.holds = np.zeros(pieces, bool)
+        self.shifts = np.zeros(pieces, "i8")
         self.continuations = [self._NAMED[3]] * groups
         at = 1
-        if not raw or raw[0] > 3 or (key and raw[0] & 1):
+        if not raw or raw[0] > (7 if regions else 3) or (key and raw[0] & 1):
             raise ValueError("motion section has values out of range")
         if raw[0] & 1:
-            size = (pieces + 7) // 8
-            if len(raw) < at + size:
-                raise ValueError("motion section is truncated")
-            bits = np.unpackbits(np.frombuffer(raw, "u1", size, at), bitorder="little")
-            if bits[pieces:].any():
+            self.holds = _bits(raw, at, pieces)
+            at += (pieces + 7) // 8
+        if raw[0] & 4:
+            if at >= len(raw) or not 1 <= raw[at] <= MAX_SHIFT:
                 raise ValueError("motion section has values out of range")
-            self.holds = bits[:pieces].astype(bool)
-            at += size
+            self.shifts = raw[at] * _bits(raw, at + 1, pieces).astype("i8")
+            at += 1 + (pieces + 7) // 8
         if not key:
             self.continuations = []
             for _ in range(groups):
@@ -309,6 +310,16 @@ class Motion:
             raise ValueError("motion section is longer than its groups")
 
 
+def _bits(raw, at, pieces):
+    size = (pieces + 7) // 8
+    if len(raw) < at + size:
+        raise ValueError("motion section is truncated")
+    bits = np.unpackbits(np.frombuffer(raw, "u1", size, at), bitorder="little")
+    if bits[pieces:].any():
+        raise ValueError("motion section has values out of range")
+    return bits[:pieces].astype(bool)
+
+
 class Predictor:
     """Section 6.5. Holds the stencils of one mesh; a state's arrays are given to each call."""
 
@@ -320,6 +331,7 @@ class Predictor:
         """Positions of a frame from residuals of all places (0 where pieces hold) and q of rest, of
         the base frame and of the one before it (both None in a key frame)."""
         stencils, begins = self.stencils, self.order.begins
+        residuals = residuals << motion.shifts[stencils.piece, None]
         q = np.zeros((len(rest), 3), "i8")
         held = motion.holds[stencils.piece]
         leads = stencils.places[:, 0] < 0

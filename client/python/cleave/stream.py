@@ -61,7 +61,9 @@ class FrameDecoder:
     """Holds the state of a stream and applies frames to it. A bad frame changes nothing.
 
     After each apply: frame, epoch, time (s), fragments, positions (nodes x 3 float64, m),
-    broken_edges (ascending int32) and state_hash are of that frame.
+    broken_edges (ascending int32) and state_hash are of that frame; and tolerances (m, a node each):
+    the largest errors of positions, more than the frame's tolerance only outside of a region of
+    interest.
     """
 
     def __init__(self, header_bytes, rest_positions, edges=None, max_nodes=64_000_000):
@@ -86,6 +88,8 @@ class FrameDecoder:
         self._previous = None
         self._quantised = None
         self._tolerance = None
+        self._shifts = np.zeros(self.header.nodes if self.header.regions else 0, "u1")
+        self.tolerances = None
         self.frame = -1
         self.epoch = 0
         self.time = 0.0
@@ -103,16 +107,16 @@ class FrameDecoder:
             raise DamagedError("topology sections stand behind others")
         others = sections[len(topology) :]
         broken = self._decode_topology(header, topology)
-        history = self._history
+        history, shifts = self._history, self._shifts
         if header.kind == HOLD:
             if sections:
                 raise DamagedError("a hold frame has sections")
             quantised = self._quantised
         elif self._predictor is not None:
-            quantised, history = self._interpolate(header, others, broken)
+            quantised, history, shifts = self._interpolate(header, others, broken)
         else:
             quantised = self._decode_positions(header, others)
-        if header.state_hash != self._hash(header, quantised, broken):
+        if header.state_hash != self._hash(header, quantised, broken, shifts):
             raise DamagedError(f"frame {header.frame} fails its state hash")
 
         self._previous = self._quantised
@@ -120,6 +124,7 @@ class FrameDecoder:
             self._previous = None if self._predictor is None else quantised
         self._quantised = quantised
         self._history = history
+        self._shifts = shifts
         self._tolerance = header.tolerance
         self.frame = header.frame
         self.epoch = header.epoch
@@ -127,6 +132,7 @@ class FrameDecoder:
         self.fragments = header.fragments
         self.broken_edges = broken
         self.state_hash = header.state_hash
+        self.tolerances = np.full(self.header.nodes, header.tolerance)
         if self.header.predictor == 3:
             self.positions = _of_ranks(quantised)
             return header
@@ -135,6 +141,8 @@ class FrameDecoder:
         if self._predictor is not None:
             by_place, positions = positions, np.empty_like(positions)
             positions[self._predictor.order.nodes] = by_place
+        if self.header.regions:
+            self.tolerances[self._predictor.order.nodes] *= 2.0**shifts
         self.positions = positions
         return header
 
@@ -251,13 +259,15 @@ class FrameDecoder:
         if (
             (motion.type, motion.prediction, motion.first) != (MOTION, 0, 0)
             or motion.count != groups
-            or not 1 <= motion.raw_bytes <= 1 + (pieces + 7) // 8 + 8 * groups
+            or not 1 <= motion.raw_bytes <= 2 + 2 * ((pieces + 7) // 8) + 8 * groups
         ):
             raise DamagedError("motion section does not fit its frame")
         key = header.kind == KEY
         rans = self.header.coder == 2
         try:
-            motion = Motion(decode_parts(motion, 1), key, rans, pieces, groups)
+            motion = Motion(
+                decode_parts(motion, 1), key, rans, self.header.regions, pieces, groups
+            )
         except ValueError as error:
             raise DamagedError(str(error)) from error
         history = self._history
@@ -298,9 +308,10 @@ class FrameDecoder:
         )
         if np.abs(q).max() > MAX_QUANTISED:
             raise DamagedError("a decoded coordinate is out of range")
-        return q.astype("<i4"), history.finish() if self.header.coder == 2 else history
+        shifts = motion.shifts[stencils.piece].astype("u1") if self.header.regions else self._shifts
+        return q.astype("<i4"), history.finish() if self.header.coder == 2 else history, shifts
 
-    def _hash(self, header, quantised, broken):
+    def _hash(self, header, quantised, broken, shifts):
         fields = struct.pack(
             "<qQddqQ",
             header.frame,
@@ -310,7 +321,8 @@ class FrameDecoder:
             header.fragments,
             len(broken),
         )
-        return xxh3_64(self._header_bytes + fields + quantised.tobytes() + broken.tobytes())
+        arrays = quantised.tobytes() + broken.tobytes() + shifts.tobytes()
+        return xxh3_64(self._header_bytes + fields + arrays)
 
 
 def _ranks_of(values):

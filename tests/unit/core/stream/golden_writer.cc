@@ -156,7 +156,8 @@ absl::Status Write(const GoldenStream& golden) {
                                         .keyframe_interval = 5,
                                         .chunk_nodes = 60,
                                         .predictor_id = golden.predictor_id,
-                                        .coder_id = golden.coder_id},
+                                        .coder_id = golden.coder_id,
+                                        .regions = golden.regions},
                                        body.rest);
   if (!header.ok()) return header.status();
   const StreamMesh mesh(body.rest, body.edges);
@@ -173,6 +174,16 @@ absl::Status Write(const GoldenStream& golden) {
     absl::Status status;
     if (at == 10) status.Update(encoder->StartEpoch(1));
     if (at == 12 && !golden.exact()) status.Update(encoder->SetTolerance(kGoldenFinerTolerance));
+    if (golden.regions && at == 4) {
+      status.Update(
+          encoder->SetRegion(Region{.nodes = {199}, .outside_tolerance = kGoldenOutsideTolerance}));
+    }
+    if (golden.regions && at == 9) {
+      status.Update(
+          encoder->SetRegion(Region{.nodes = {},
+                                    .box = std::array<Vec3, 2>{Vec3{-1, -3, 4}, Vec3{0.2, 0, 6}},
+                                    .outside_tolerance = kGoldenOutsideTolerance}));
+    }
     if (!status.ok()) return status;
     Frame frame = lattice ? LatticeFrame(body, numbers[at], at == 12, golden.crumbles)
                           : TemporalFrame(body, numbers[at]);

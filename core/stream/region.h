@@ -1,0 +1,23 @@
+#ifndef CLEAVE_CORE_STREAM_REGION_H_
+#define CLEAVE_CORE_STREAM_REGION_H_
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/vec3.h"
+
+namespace cleave {
+
+// What a viewer looks at: pieces with one of these nodes, and pieces of which a node is now within
+// the box (m, least and largest corner). Frames say of each piece whether it is inside.
+struct Region {
+  std::vector<int32_t> nodes;
+  std::optional<std::array<Vec3, 2>> box = std::nullopt;
+  double outside_tolerance = 0;  // m, for the other pieces; at least twice that of the stream
+};
+
+}  // namespace cleave
+
+#endif  // CLEAVE_CORE_STREAM_REGION_H_
