@@ -24,6 +24,7 @@ FrameStreamOptions StreamOptions(const FollowOptions& options, ProgressDisplay& 
   stream.events = options.events != nullptr;
   stream.rung = options.accuracy.rung();
   if (options.accuracy.tolerance > 0) stream.tolerance = options.accuracy.tolerance;
+  stream.region = options.region.message();
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last())
       stream.resume = FramePosition{last->epoch, last->frame, last->state_hash};
@@ -81,10 +82,15 @@ void TellAccuracy(const FrameStream& stream, const FollowOptions& options) {
                     .Add("event", "accuracy")
                     .Add("rung", rung)
                     .Add("tolerance", stream.tolerance())
+                    .Add("outside_tolerance", stream.outside_tolerance())
                     .Str());
   } else if (!options.quiet) {
+    const std::string outside =
+        stream.outside_tolerance() > 0
+            ? absl::StrCat(" in the region, ", stream.outside_tolerance(), " m elsewhere")
+            : "";
     PrintNote(absl::StrCat("coordinates within ", stream.tolerance(), " m",
-                           rung.empty() ? "" : " (" + rung + ")"));
+                           rung.empty() ? "" : " (" + rung + ")", outside));
   }
 }
 
@@ -106,7 +112,7 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
   std::atomic<bool> interrupted{false};
   const ScopedHandler handler(interrupt, SignalHandler(client, options, stream, interrupted));
   CLEAVE_RETURN_IF_ERROR(stream.Open());
-  if (options.accuracy.asked()) TellAccuracy(stream, options);
+  if (options.accuracy.asked() || stream.outside_tolerance() > 0) TellAccuracy(stream, options);
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last()) TakeOver(*last, result);
     CLEAVE_RETURN_IF_ERROR(options.recorder->Begin(stream.header_bytes()));

@@ -11,6 +11,7 @@
 #include "client/cli/accuracy.h"
 #include "client/cli/event_file.h"
 #include "client/cli/interrupt.h"
+#include "client/cli/region.h"
 #include "client/cpp/client.h"
 #include "client/io/record/recorder.h"
 
@@ -28,6 +29,7 @@ struct FollowOptions {
   bool json = false;             // a JSON line a frame on stdout instead of progress on stderr
   bool quiet = false;
   AccuracyOptions accuracy;      // asked of the server
+  RegionOptions region;          // that is looked at
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
   EventFile* events = nullptr;   // takes what breaks; may be null
   // Called once before the first frame, when the recorder fits the stream, with the mesh's asset.

@@ -9,6 +9,7 @@
 #include "client/cli/goal.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
+#include "client/cli/region.h"
 #include "client/cli/run_folder.h"
 #include "client/cli/server_access.h"
 #include "client/cli/session_mesh.h"
@@ -21,6 +22,7 @@ struct Options {
   ServerOptions server;
   GoalOptions goal;
   AccuracyOptions accuracy;
+  RegionOptions region;
   std::string session;
   std::string out;
   int64_t from = 0;
@@ -65,6 +67,7 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
 }
 
 absl::Status Watch(Program& program, const Options& options) {
+  CLEAVE_RETURN_IF_ERROR(options.region.Check());
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<Client> client,
                           ConnectServer(options.server, program.interrupt));
   CLEAVE_ASSIGN_OR_RETURN(v1::Session session, client->GetSession(SessionName(options.session)));
@@ -80,6 +83,7 @@ absl::Status Watch(Program& program, const Options& options) {
   follow.goal_frame = session.goal_frame();
   follow.head_frame = head;
   follow.accuracy = options.accuracy;
+  follow.region = options.region;
   follow.json = options.json;
   follow.quiet = options.quiet;
   return Record(*client, program.interrupt, options, follow, scene);
@@ -103,6 +107,7 @@ void AddWatch(CLI::App& app, Program& program) {
       ->check(CountWithin(0, int64_t{1} << 40))
       ->type_name("FRAME");
   AddAccuracyOptions(*verb, options->accuracy, "of what is sent", "all that the session keeps");
+  AddRegionOptions(*verb, options->region);
   verb->add_flag("--run", options->run, "Let a paused session run on first");
   AddGoalOptions(*verb, options->goal);
   verb->add_flag("--stay", options->stay, "Stay when the run is over, for frames to come");
@@ -112,10 +117,12 @@ void AddWatch(CLI::App& app, Program& program) {
       "Ctrl-C leaves; the session goes on. With --out, a later `watch` with the same folder goes\n"
       "on where the recording ends. Coarser frames than the session keeps are encoded once for "
       "all\n"
-      "who watch them; finer ones than it keeps there are none (exit code 7).\n\n"
+      "who watch them; finer ones than it keeps there are none (exit code 7). A region is encoded\n"
+      "for whoever looks at it, at best at twice the tolerance that the session keeps.\n\n"
       "Examples:\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --out out/bar\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --rung preview --out out/small\n"
+      "  cleave watch bar-3f2a1c --server farm-3:7420 --region-box 0 0 0 1 1 1 --outside 0.01\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --run      wake a paused session\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return Watch(shared, *options); };

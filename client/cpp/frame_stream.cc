@@ -59,6 +59,7 @@ absl::Status FrameStream::Connect() {
   if (options_.stop_frame.has_value()) request.set_stop_frame(*options_.stop_frame);
   if (options_.tolerance.has_value()) request.set_tolerance(*options_.tolerance);
   if (options_.rung.has_value()) request.set_rung(RungMessage(options_.rung));
+  if (options_.region.has_value()) *request.mutable_region() = *options_.region;
   request.set_latest(options_.latest);
   if (position_.has_value()) {
     request.set_first_frame(position_->frame + 1);

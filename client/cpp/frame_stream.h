@@ -44,6 +44,8 @@ struct FrameStreamOptions {
   // neither: what the session keeps. rung() and tolerance() tell what is given.
   std::optional<Rung> rung;
   std::optional<double> tolerance;
+  // Set: only this is as accurate as asked, and exactly so; see frame.proto.
+  std::optional<v1::RegionOfInterest> region;
   bool latest = false;  // leave out what is before the newest key frame, where behind
   // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder(). With them
   // its edges (Incidence::edges).
@@ -86,6 +88,8 @@ class FrameStream {
   // What is given: absent where it is no rung's; largest error of a coordinate, m.
   std::optional<Rung> rung() const;
   double tolerance() const { return start_->tolerance(); }
+  // m, outside of the region; 0 without one. FrameDecoder::Tolerances tells where that is.
+  double outside_tolerance() const { return start_->outside_tolerance(); }
   // Newest committed frame that the server told of.
   int64_t head_frame() const { return head_frame_; }
   // The last frame that Next gave (or `resume`).

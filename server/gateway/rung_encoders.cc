@@ -1,10 +1,15 @@
 #include "server/gateway/rung_encoders.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "core/base/status.h"
 #include "server/gateway/log.h"
+#include "server/session/encoding.h"
 
 namespace cleave {
 namespace {
@@ -16,26 +21,65 @@ constexpr int kMaxRestarts = 3;
 
 RungEncoders::RungEncoders(SessionPaths paths, std::string program, std::function<void()> changed)
     : paths_(std::move(paths)), program_(std::move(program)), changed_(std::move(changed)) {
-  for (const Rung rung : kRungs) encoders_.try_emplace(rung, paths_.rung(rung));
+  std::error_code error;  // where there are no rungs, or one cannot be removed, nothing is lost
+  for (const auto& entry : std::filesystem::directory_iterator(paths_.rungs(), error)) {
+    std::error_code removing;
+    if (absl::StartsWith(entry.path().filename().string(), kRegionPrefix))
+      std::filesystem::remove_all(entry.path(), removing);
+  }
 }
 
-RungEncoders::State RungEncoders::state(Rung rung) const {
+FrameLogReader& RungEncoders::frames(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  const Encoder& encoder = encoders_.at(rung);
+  return encoders_.at(name).frames;
+}
+
+RungEncoders::State RungEncoders::state(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const Encoder& encoder = encoders_.at(name);
   return {encoder.head, encoder.failure};
 }
 
-void RungEncoders::StartLocked(Rung rung, Encoder& encoder) {
+// Where regions take all places, the one that was left first gives up its own.
+absl::Status RungEncoders::MakeRoomLocked() {
+  size_t regions = 0;
+  bool some_leave = false;
+  auto idle = encoders_.end();
+  for (auto at = encoders_.begin(); at != encoders_.end(); ++at) {
+    const Encoder& encoder = at->second;
+    if (!encoder.encoding.has_region()) continue;
+    ++regions;
+    some_leave |= encoder.viewers == 0;
+    if (encoder.viewers > 0 || encoder.worker != nullptr) continue;
+    if (idle == encoders_.end() || encoder.left < idle->second.left) idle = at;
+  }
+  if (regions < kMaxRegions) return absl::OkStatus();
+  if (idle == encoders_.end() && some_leave) {
+    return absl::UnavailableError("the place of a region is about to be free");
+  }
+  if (idle == encoders_.end()) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("other viewers look at ", kMaxRegions, " regions already"));
+  }
+  std::error_code error;
+  std::filesystem::remove_all(paths_.rung(idle->first), error);
+  std::filesystem::remove(paths_.rung_owner(idle->first), error);
+  encoders_.erase(idle);
+  return absl::OkStatus();
+}
+
+void RungEncoders::StartLocked(Encoder& encoder) {
+  const std::string name = encoder.encoding.name();
   WorkerProcess::Listener listener;
   const std::weak_ptr<RungEncoders> weak = weak_from_this();
-  listener.on_status = [weak, rung](const worker::v1::Status& status) {
-    if (const auto self = weak.lock()) self->OnStatus(rung, status);
+  listener.on_status = [weak, name](const worker::v1::Status& status) {
+    if (const auto self = weak.lock()) self->OnStatus(name, status);
   };
-  listener.on_exit = [weak, rung](const std::string& how) {
-    if (const auto self = weak.lock()) self->OnExit(rung, how);
+  listener.on_exit = [weak, name](const std::string& how) {
+    if (const auto self = weak.lock()) self->OnExit(name, how);
   };
   absl::StatusOr<std::shared_ptr<WorkerProcess>> worker = WorkerProcess::Start(
-      {.program = program_, .directory = paths_.root, .threads = 1, .rung = rung},
+      {.program = program_, .directory = paths_.root, .threads = 1, .encoding = encoder.encoding},
       std::move(listener));
   encoder.failure = worker.status();
   if (!worker.ok()) return;
@@ -43,9 +87,7 @@ void RungEncoders::StartLocked(Rung rung, Encoder& encoder) {
   encoder.told = -1;
   encoder.start_head = encoder.head;
   Log(LogLevel::kInfo, "rung_worker_started",
-      {{"directory", paths_.root},
-       {"rung", std::string(RungName(rung))},
-       {"pid", absl::StrCat(encoder.worker->pid())}});
+      {{"directory", paths_.root}, {"rung", name}, {"pid", absl::StrCat(encoder.worker->pid())}});
 }
 
 void RungEncoders::TellLocked(Encoder& encoder) {
@@ -58,18 +100,23 @@ void RungEncoders::TellLocked(Encoder& encoder) {
   encoder.worker->Send(std::move(command), [](const absl::Status&) {});
 }
 
-void RungEncoders::AddViewer(Rung rung) {
+absl::Status RungEncoders::AddViewer(const worker::v1::Encoding& encoding) {
   const std::lock_guard lock(mutex_);
-  Encoder& encoder = encoders_.at(rung);
+  if (encoding.has_region() && !encoders_.contains(encoding.name()))
+    CLEAVE_RETURN_IF_ERROR(MakeRoomLocked());
+  Encoder& encoder =
+      encoders_.try_emplace(encoding.name(), encoding, paths_.rung(encoding.name())).first->second;
   if (++encoder.viewers == 1) encoder.restarts = 0;
   // One that is on its way out is replaced when it has ended.
-  if (encoder.worker == nullptr && !ending_) StartLocked(rung, encoder);
+  if (encoder.worker == nullptr && !ending_) StartLocked(encoder);
+  return absl::OkStatus();
 }
 
-void RungEncoders::RemoveViewer(Rung rung) {
+void RungEncoders::RemoveViewer(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  Encoder& encoder = encoders_.at(rung);
-  if (--encoder.viewers > 0 || encoder.worker == nullptr) return;
+  Encoder& encoder = encoders_.at(name);
+  if (--encoder.viewers == 0) encoder.left = ++leaves_;
+  if (encoder.viewers > 0 || encoder.worker == nullptr) return;
   encoder.quitting = true;
   encoder.worker->Quit();
 }
@@ -77,13 +124,13 @@ void RungEncoders::RemoveViewer(Rung rung) {
 void RungEncoders::Committed(int64_t head) {
   const std::lock_guard lock(mutex_);
   session_head_ = std::max(session_head_, head);
-  for (auto& [rung, encoder] : encoders_) TellLocked(encoder);
+  for (auto& [name, encoder] : encoders_) TellLocked(encoder);
 }
 
 void RungEncoders::End(bool at_once) {
   const std::lock_guard lock(mutex_);
   ending_ = true;
-  for (auto& [rung, encoder] : encoders_) {
+  for (auto& [name, encoder] : encoders_) {
     if (encoder.worker == nullptr) continue;
     at_once ? encoder.worker->Kill() : encoder.worker->Quit();
   }
@@ -95,17 +142,15 @@ bool RungEncoders::ended() const {
                      [](const auto& entry) { return entry.second.worker == nullptr; });
 }
 
-void RungEncoders::OnStatus(Rung rung, const worker::v1::Status& status) {
+void RungEncoders::OnStatus(const std::string& name, const worker::v1::Status& status) {
   {
     const std::lock_guard lock(mutex_);
-    Encoder& encoder = encoders_.at(rung);
+    Encoder& encoder = encoders_.at(name);
     if (status.has_error()) {
       encoder.failure = absl::Status(static_cast<absl::StatusCode>(status.error().code()),
                                      status.error().message());
       Log(LogLevel::kError, "rung_failed",
-          {{"directory", paths_.root},
-           {"rung", std::string(RungName(rung))},
-           {"reason", status.error().message()}});
+          {{"directory", paths_.root}, {"rung", name}, {"reason", status.error().message()}});
     } else {
       encoder.head = status.head_frame();
       if (encoder.head > encoder.start_head) encoder.restarts = 0;
@@ -115,17 +160,17 @@ void RungEncoders::OnStatus(Rung rung, const worker::v1::Status& status) {
   changed_();
 }
 
-void RungEncoders::OnExit(Rung rung, const std::string& how) {
+void RungEncoders::OnExit(const std::string& name, const std::string& how) {
   {
     const std::lock_guard lock(mutex_);
-    Encoder& encoder = encoders_.at(rung);
+    Encoder& encoder = encoders_.at(name);
     encoder.worker.reset();
     const bool told_to = std::exchange(encoder.quitting, false);
     Log(told_to || ending_ ? LogLevel::kInfo : LogLevel::kWarning, "rung_worker_ended",
-        {{"directory", paths_.root}, {"rung", std::string(RungName(rung))}, {"how", how}});
+        {{"directory", paths_.root}, {"rung", name}, {"how", how}});
     if (encoder.viewers > 0 && !ending_ && encoder.failure.ok()) {
       if (told_to || encoder.restarts++ < kMaxRestarts) {
-        StartLocked(rung, encoder);
+        StartLocked(encoder);
       } else {
         encoder.failure = absl::AbortedError(
             absl::StrCat("its worker ended with ", how, " too often without a new frame"));

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "core/base/status.h"
 #include "server/control/message_socket.h"
@@ -33,9 +34,9 @@ absl::StatusOr<pid_t> Spawn(const WorkerProcess::Options& options, const FileDes
     words.push_back("--threads");
     words.push_back(absl::StrCat(options.threads));
   }
-  if (options.rung.has_value()) {
-    words.push_back("--rung");
-    words.push_back(std::string(RungName(*options.rung)));
+  if (options.encoding.has_value()) {
+    words.push_back("--encoding");
+    words.push_back(absl::BytesToHexString(options.encoding->SerializeAsString()));
   }
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

@@ -15,7 +15,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cleave/worker/v1/control.pb.h"
-#include "core/stream/rungs.h"
 #include "server/files/durable_file.h"
 
 namespace cleave {
@@ -30,8 +29,8 @@ class WorkerProcess {
     std::string program;    // path of cleave-worker
     std::string directory;  // session directory
     int threads = 0;        // 0: the worker's default
-    std::optional<Rung> rung =
-        std::nullopt;  // encodes this from the session's frames instead of simulating
+    // Encodes this from the session's frames instead of simulating.
+    std::optional<worker::v1::Encoding> encoding = std::nullopt;
   };
   // Called from the reading thread, one after the other, in the order of the worker's changes. The
   // acknowledgement of a command comes between the events before and after it.

@@ -3,8 +3,6 @@
 
 #include <string>
 
-#include "core/stream/rungs.h"
-
 namespace cleave {
 
 // Where things are in a session directory.
@@ -18,10 +16,10 @@ struct SessionPaths {
   std::string reports() const { return root + "/reports.jsonl"; }
   std::string events() const { return root + "/events"; }
   std::string owner() const { return root + "/owner"; }
-  // Logs of coarser rungs, each encoded from frames(): they can be made again.
+  // Logs of coarser rungs and of regions, each encoded from frames(): they can be made again.
   std::string rungs() const { return root + "/rungs"; }
-  std::string rung(Rung rung) const { return rungs() + "/" + std::string(RungName(rung)); }
-  std::string rung_owner(Rung of) const { return rung(of) + ".owner"; }
+  std::string rung(const std::string& name) const { return rungs() + "/" + name; }
+  std::string rung_owner(const std::string& name) const { return rung(name) + ".owner"; }
 };
 
 }  // namespace cleave

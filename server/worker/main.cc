@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/string_view.h"
 #include "cleave/worker/v1/control.pb.h"
@@ -21,6 +22,8 @@
 #include "core/stream/rungs.h"
 #include "server/control/message_socket.h"
 #include "server/files/durable_file.h"
+#include "server/session/encoding.h"
+#include "server/session/frame_log.h"
 #include "server/session/journal.h"
 #include "server/session/owner_lock.h"
 #include "server/session/session_paths.h"
@@ -36,12 +39,13 @@ namespace cleave {
 namespace {
 
 constexpr char kUsage[] =
-    R"(cleave-worker DIRECTORY [--rung RUNG] [--threads T] [--control-fd N]
+    R"(cleave-worker DIRECTORY [--rung RUNG | --encoding HEX] [--threads T] [--control-fd N]
 
 Simulates the session in DIRECTORY up to its scene's frame count and exits. Started again on the
 same directory it goes on behind the last committed frame. SIGTERM and SIGINT save and exit.
 
   --rung RUNG      encode the frames that are there more coarsely (preview, standard, fine) instead
+  --encoding HEX   the same as this cleave.worker.v1.Encoding says (the gateway does so)
   --threads T      threads to use; without it what the session says, else all of the machine
   --control-fd N   take commands from this socket instead (the gateway does so)
 )";
@@ -51,6 +55,7 @@ struct Arguments {
   int threads = 0;
   int control_fd = -1;
   std::optional<Rung> rung;
+  std::optional<worker::v1::Encoding> encoding;
 };
 
 bool ParseArguments(int argc, char** argv, Arguments& arguments) {
@@ -63,6 +68,10 @@ bool ParseArguments(int argc, char** argv, Arguments& arguments) {
       if (++i == argc) return false;
       arguments.rung = ParseRung(argv[i]);
       if (!arguments.rung.has_value()) return false;
+    } else if (argument == "--encoding") {
+      if (++i == argc ||
+          !arguments.encoding.emplace().ParseFromString(absl::HexStringToBytes(argv[i])))
+        return false;
     } else if (number != nullptr) {
       if (++i == argc || !absl::SimpleAtoi(argv[i], number) || *number < 0) return false;
     } else if (arguments.directory.empty() && argument.substr(0, 1) != "-") {
@@ -99,17 +108,26 @@ absl::Status Simulate(const SessionPaths& paths, const Arguments& arguments, Con
   return RunSession(*session, control, batch);
 }
 
+absl::StatusOr<worker::v1::Encoding> EncodingOf(const SessionPaths& paths,
+                                                const Arguments& arguments) {
+  if (arguments.encoding.has_value()) return *arguments.encoding;
+  CLEAVE_ASSIGN_OR_RETURN(const std::string kept, FrameLogReader(paths.frames()).ReadHeader());
+  CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header, ParseStreamHeader(kept));
+  return EncodingOfRung(*arguments.rung, header);
+}
+
 absl::Status FollowSession(const SessionPaths& paths, const Arguments& arguments,
                            const FileDescriptor& control) {
+  CLEAVE_ASSIGN_OR_RETURN(const worker::v1::Encoding encoding, EncodingOf(paths, arguments));
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(paths.rungs()));
   CLEAVE_ASSIGN_OR_RETURN(const OwnerLock lock,
-                          WaitForLock(paths.rung_owner(*arguments.rung), control));
+                          WaitForLock(paths.rung_owner(encoding.name()), control));
   CLEAVE_ASSIGN_OR_RETURN(const SessionInputs inputs, LoadSessionInputs(paths));
   // One thread unless told otherwise: the cores are the simulation's.
   const tbb::global_control parallelism(tbb::global_control::max_allowed_parallelism,
                                         static_cast<size_t>(std::max(1, arguments.threads)));
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<RungLog> log,
-                          RungLog::Open(paths, inputs, *arguments.rung));
+                          RungLog::Open(paths, inputs, encoding));
   return EncodeRung(*log, control);
 }
 
@@ -170,8 +188,9 @@ int main(int argc, char** argv) {
   sigaddset(&signals, SIGINT);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
-  const absl::Status status =
-      arguments.rung.has_value() ? cleave::WorkOnRung(arguments) : cleave::Work(arguments);
+  const absl::Status status = arguments.rung.has_value() || arguments.encoding.has_value()
+                                  ? cleave::WorkOnRung(arguments)
+                                  : cleave::Work(arguments);
   if (status.ok()) return 0;
   std::fprintf(stderr, "cleave-worker: %s: %s\n", arguments.directory.c_str(),
                status.ToString().c_str());

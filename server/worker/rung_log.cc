@@ -13,32 +13,29 @@
 namespace cleave {
 
 absl::StatusOr<std::unique_ptr<RungLog>> RungLog::Open(const SessionPaths& paths,
-                                                       const SessionInputs& inputs, Rung rung) {
-  std::unique_ptr<RungLog> opened(new RungLog(paths, rung));
+                                                       const SessionInputs& inputs,
+                                                       const worker::v1::Encoding& encoding) {
+  std::unique_ptr<RungLog> opened(new RungLog(paths, encoding));
   opened->edges_ = BuildIncidence(inputs.mesh).edges;
   opened->rest_positions_ = inputs.mesh.rest_positions;
-  CLEAVE_RETURN_IF_ERROR(opened->MakeHeader(inputs, rung));
+  CLEAVE_RETURN_IF_ERROR(opened->MakeHeader(inputs));
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(opened->directory_));
   if (!opened->Resume().ok()) CLEAVE_RETURN_IF_ERROR(opened->Begin());
   return opened;
 }
 
-absl::Status RungLog::MakeHeader(const SessionInputs& inputs, Rung rung) {
+absl::Status RungLog::MakeHeader(const SessionInputs& inputs) {
   CLEAVE_ASSIGN_OR_RETURN(kept_header_bytes_, kept_.ReadHeader());
   CLEAVE_ASSIGN_OR_RETURN(const StreamHeader kept, ParseStreamHeader(kept_header_bytes_));
-  const absl::StatusOr<RungChoice> choice = SnapDown(rung, kept);
-  if (!choice.ok() || choice->as_kept || choice->rung != rung)
-    return absl::InvalidArgumentError(absl::StrCat("the session's frames, kept at ", kept.tolerance,
-                                                   " m, have no coarser rung \"", RungName(rung),
-                                                   "\""));
   StreamParameters parameters;
   parameters.mesh_sha256 = kept.mesh_sha256;
   parameters.edge_count = kept.edge_count;
   parameters.tet_count = kept.tet_count;
-  parameters.tolerance = ToleranceOfAnew(rung, kept);
+  parameters.tolerance = tolerance_;
   parameters.keyframe_interval = kept.keyframe_interval;
   parameters.frames_per_second = kept.frames_per_second;
   ChooseIds(inputs.mesh.rest_positions, parameters);
+  parameters.regions = region_.has_value();
   CLEAVE_ASSIGN_OR_RETURN(header_, MakeStreamHeader(parameters, inputs.mesh.rest_positions));
   return absl::OkStatus();
 }
@@ -60,8 +57,12 @@ absl::Status RungLog::Resume() {
                             log_->ReadFrame(log_->rows()[static_cast<size_t>(frame)]));
     CLEAVE_RETURN_IF_ERROR(own.Apply(bytes));
   }
-  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh(), own.state()));
-  return absl::OkStatus();
+  return MakeEncoder(own.state());
+}
+
+absl::Status RungLog::MakeEncoder(std::optional<StreamState> state) {
+  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh(), std::move(state)));
+  return region_.has_value() ? encoder_->SetRegion(region_) : absl::OkStatus();
 }
 
 absl::Status RungLog::Begin() {
@@ -72,8 +73,7 @@ absl::Status RungLog::Begin() {
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(directory_));
   CLEAVE_ASSIGN_OR_RETURN(log_, FrameLogWriter::Open(directory_));
   CLEAVE_ASSIGN_OR_RETURN(decoder_, FrameDecoder::Create(kept_header_bytes_, mesh()));
-  CLEAVE_ASSIGN_OR_RETURN(encoder_, FrameEncoder::Create(header_, mesh()));
-  return absl::OkStatus();
+  return MakeEncoder(std::nullopt);
 }
 
 absl::Status RungLog::EncodeNext() {

@@ -13,23 +13,25 @@
 #include "core/base/vec3.h"
 #include "core/stream/frame_decoder.h"
 #include "core/stream/frame_encoder.h"
-#include "core/stream/rungs.h"
+#include "core/stream/region.h"
+#include "server/session/encoding.h"
 #include "server/session/frame_log.h"
 #include "server/worker/session_inputs.h"
 
 namespace cleave {
 
-// A coarser rung of a session's frames: decoded from the session's log, encoded anew and committed
-// to a log of its own, from frame 0 on. Its bytes follow from the session's alone, whoever watches
-// and whenever, so nothing is lost with it: a log that is damaged, or ahead of the session's, is
-// begun anew. Not thread-safe.
+// A session's frames as a coarser rung, or with a region of interest: decoded from the session's
+// log, encoded anew and committed to a log of its own, from frame 0 on. Its bytes follow from the
+// session's alone, whoever watches and whenever, so nothing is lost with it: a log that is damaged,
+// or ahead of the session's, is begun anew. Not thread-safe.
 class RungLog {
  public:
   // Goes on behind the last frame of the rung's log. The session has frame 0, and the caller owns
-  // the rung (owner_lock.h). Errors: InvalidArgument when the session's own frames are too coarse
-  // for the rung; NotFound, DataLoss.
+  // the rung (owner_lock.h). Errors: InvalidArgument when there can be no such encoding; NotFound,
+  // DataLoss.
   static absl::StatusOr<std::unique_ptr<RungLog>> Open(const SessionPaths& paths,
-                                                       const SessionInputs& inputs, Rung rung);
+                                                       const SessionInputs& inputs,
+                                                       const worker::v1::Encoding& encoding);
 
   // Newest frame committed, -1 for none.
   int64_t head() const { return log_->head(); }
@@ -43,10 +45,14 @@ class RungLog {
   absl::Status EncodeNext();
 
  private:
-  RungLog(const SessionPaths& paths, Rung rung)
-      : directory_(paths.rung(rung)), kept_(paths.frames()) {}
+  RungLog(const SessionPaths& paths, const worker::v1::Encoding& encoding)
+      : directory_(paths.rung(encoding.name())),
+        kept_(paths.frames()),
+        tolerance_(encoding.tolerance()),
+        region_(RegionOf(encoding)) {}
 
-  absl::Status MakeHeader(const SessionInputs& inputs, Rung rung);
+  absl::Status MakeHeader(const SessionInputs& inputs);
+  absl::Status MakeEncoder(std::optional<StreamState> state);
   // Brings both ends of the encoding to the head of the log.
   absl::Status Resume();
   absl::Status Begin();
@@ -54,6 +60,8 @@ class RungLog {
 
   std::string directory_;
   FrameLogReader kept_;  // the session's
+  double tolerance_;     // m, against those
+  std::optional<Region> region_;
   std::string kept_header_bytes_;
   std::vector<Vec3> rest_positions_;
   std::vector<std::array<int32_t, 2>> edges_;

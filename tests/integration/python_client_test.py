@@ -24,7 +24,7 @@ import grpc  # noqa: E402
 import numpy as np  # noqa: E402
 from google.protobuf import json_format  # noqa: E402
 
-from cleave.client import CleaveError, Client  # noqa: E402
+from cleave.client import CleaveError, Client, Region  # noqa: E402
 from cleave.events import read_events  # noqa: E402
 from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
 
@@ -132,6 +132,25 @@ class PythonClientTest(unittest.TestCase):
         self.assertLess(len(latest), len(fine))
         with self.assertRaisesRegex(CleaveError, "is finer than"):
             list(session.frames(mesh=mesh, tolerance=0.5 * fine[0].tolerance))
+
+    def test_a_region_is_as_accurate_as_asked_and_the_rest_is_coarser(self):
+        session = self.client.create_session("region", first_steps.bar(), rung="fine")
+        self.addCleanup(session.delete)
+        session.run()
+        mesh = session.mesh()
+        kept = list(session.frames(mesh=mesh))
+        box = ((-1e3, -1e3, -1e3), (-1e2, 1e3, 1e3))  # where nothing is
+        seen = list(session.frames(mesh=mesh, rung="standard", region=Region(box=box)))
+        self.assertEqual(len(seen), len(kept))
+        for one, other in zip(seen, kept):
+            error = np.abs(one.positions - other.positions).max(axis=1)
+            self.assertTrue((error <= one.tolerances - other.tolerance).all())
+            self.assertLessEqual(one.tolerances.max(), 10.001 * one.tolerance)
+            self.assertGreater(one.tolerances.max(), 3 * one.tolerance)
+        near = next(session.frames(mesh=mesh, rung="standard", region=Region((0,), None, "preview")))
+        self.assertAlmostEqual(near.tolerances[0] / near.tolerance, 1)
+        with self.assertRaisesRegex(CleaveError, "below twice"):
+            next(session.frames(mesh=mesh, rung="fine", region=Region((0,))))
 
     def test_events_of_a_run_folder_are_read(self):
         place = '"rest":[1,2,3],"position":[1.5,2,3],"energy":0.25}'

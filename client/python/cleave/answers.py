@@ -18,6 +18,7 @@ class Frame:
     broken_edges: np.ndarray  # ascending int32
     events: object = None  # Events (events.py) where they were asked for
     tolerance: float = 0.0  # m, largest error of a coordinate against the simulation
+    tolerances: object = None  # the same of each node, in frames with a region of interest
 
 
 @dataclasses.dataclass(frozen=True)

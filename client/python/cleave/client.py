@@ -23,7 +23,9 @@ from google.protobuf import json_format, text_format
 from cleave.answers import Curve, ImpurityPreview, Mesh, Probe
 from cleave.checksums import crc32c
 from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay  # noqa: F401
-from cleave.session import Session, rung_number
+from cleave.region import Region  # noqa: F401
+from cleave.rungs import rung_number
+from cleave.session import Session
 from cleave.stubs import (
     asset_pb2,
     asset_pb2_grpc,

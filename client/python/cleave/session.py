@@ -8,6 +8,7 @@ import grpc
 from cleave.answers import Frame
 from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay
 from cleave.events import Events, PieceNames
+from cleave.rungs import rung_number
 from cleave.stream import FrameDecoder, split_frame
 from cleave.stubs import frame_pb2, session_pb2
 
@@ -76,13 +77,16 @@ class Session:
         rung=None,
         tolerance=None,
         latest=False,
+        region=None,
     ):
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
         what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is
         the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
-        have. With `latest` a slow reader skips to the newest key frame. Raises CleaveError
+        have. With `latest` a slow reader skips to the newest key frame. In a `region` (a Region) the
+        accuracy is exactly what was asked for, at least twice what is kept, and coarser elsewhere: frames
+        tell the tolerances of their nodes. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()
@@ -97,6 +101,8 @@ class Session:
                 request.rung = rung_number(rung)
             if tolerance is not None:
                 request.tolerance = tolerance
+            if region is not None:
+                region.put_into(request.region)
             if stop_frame is not None:
                 request.stop_frame = stop_frame
             if decoder is not None and decoder.frame >= 0:
@@ -115,6 +121,7 @@ class Session:
                         decoder = FrameDecoder(
                             message.start.header, mesh.positions, mesh.edges()
                         )
+                        kept = given - decoder.header.tolerance if region is not None else 0.0
                     elif event == "events":
                         if broken.frame not in (0, message.events.frame):
                             raise CleaveError(
@@ -144,6 +151,7 @@ class Session:
                                 decoder.broken_edges.copy(),
                                 pieces.begin(told),
                                 given,
+                                None if region is None else decoder.tolerances + kept,
                             )
                         pieces.follow(told)
                         broken.Clear()
@@ -161,11 +169,3 @@ class Session:
             if attempt >= ATTEMPTS:
                 raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
             time.sleep(delay(attempt))
-
-
-def rung_number(name):
-    """The protocol's number of a rung's name, or of None. Raises ValueError for another name."""
-    names = {None: 0, "preview": 1, "standard": 2, "fine": 3, "lossless": 4}
-    if name not in names:
-        raise ValueError(f"rung: {name!r} is none of preview, standard, fine, lossless")
-    return names[name]

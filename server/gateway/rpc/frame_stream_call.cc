@@ -40,7 +40,7 @@ void FrameStreamCall::OnCancel() {
 
 void FrameStreamCall::OnDone() {
   if (session() != nullptr) session()->AddViewer(-1);
-  if (rung_.has_value()) session()->rungs().RemoveViewer(*rung_);
+  if (!encoding_.empty()) session()->rungs().RemoveViewer(encoding_);
   Close();
 }
 
@@ -71,12 +71,7 @@ absl::Status FrameStreamCall::CheckRequest() const {
   if (request_.has_stop_frame() && request_.stop_frame() < 0) {
     faults.Error("stop_frame", absl::StrCat(request_.stop_frame(), " is negative"));
   }
-  if (request_.has_tolerance() && !(request_.tolerance() >= 0)) {
-    faults.Error("tolerance", absl::StrCat(request_.tolerance(), " m is below 0"));
-  }
-  if (request_.has_rung() && !v1::Rung_IsValid(request_.rung())) {
-    faults.Error("rung", absl::StrCat(static_cast<int>(request_.rung()), " is no rung"));
-  }
+  CheckFrameChoice(request_, faults);
   return faults.ok() ? absl::OkStatus() : MakeBadRequest("PARAM_OUT_OF_RANGE", "", faults);
 }
 
@@ -93,12 +88,12 @@ absl::Status FrameStreamCall::Begin() {
 absl::Status FrameStreamCall::Refresh(const HostedSession::State& state) {
   CLEAVE_RETURN_IF_ERROR(session()->frames().Refresh(state.head_frame));
   head_ = session()->frames().head();
-  if (!rung_.has_value()) return absl::OkStatus();
-  const RungEncoders::State rung = session()->rungs().state(*rung_);
+  if (encoding_.empty()) return absl::OkStatus();
+  const RungEncoders::State rung = session()->rungs().state(encoding_);
   head_ = std::min(head_, rung.head_frame);
   if (head_ < session()->frames().head() && !rung.failure.ok()) {
     return MakeError(absl::StatusCode::kInternal, "RUNG_FAILED",
-                     absl::StrCat("the rung ", RungName(*rung_), " of ", session()->name(),
+                     absl::StrCat("the rung ", encoding_, " of ", session()->name(),
                                   " ends at frame ", head_, ": ", rung.failure.message()));
   }
   return frames().Refresh(head_);
@@ -159,22 +154,20 @@ absl::StatusOr<bool> FrameStreamCall::Choose(const HostedSession::State& state) 
   }
   CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, kept.ReadHeader());
   CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header, ParseStreamHeader(bytes));
-  double tolerance = header.tolerance;
-  if (request_.has_tolerance()) tolerance = request_.tolerance();
-  const std::optional<Rung> rung = RungFromMessage(request_.rung());
-  if (rung.has_value()) tolerance = RungTolerance(*rung, header.diagonal());
-  const absl::StatusOr<RungChoice> choice = SnapDown(tolerance, header);
-  if (!choice.ok()) {
-    return MakeError(
-        absl::StatusCode::kFailedPrecondition, "FINER_THAN_KEPT",
-        absl::StrCat(request_.has_rung() ? "rung: " : "tolerance: ", choice.status().message(),
-                     "; a session that is created with a finer rung or scene.output.tolerance "
-                     "keeps them"));
+  CLEAVE_ASSIGN_OR_RETURN(FrameChoice choice, ChooseFrames(request_, header));
+  if (choice.encoding.has_value()) {
+    const absl::Status added = session()->rungs().AddViewer(*choice.encoding);
+    if (absl::IsUnavailable(added)) {
+      return MakeRetryLater("TOO_MANY_REGIONS", added.message(), 1);
+    }
+    if (!added.ok()) {
+      return MakeError(added.code(), "TOO_MANY_REGIONS",
+                       absl::StrCat(session()->name(), ": ", added.message()));
+    }
+    encoding_ = choice.encoding->name();
   }
-  choice_ = *choice;
-  if (choice_->as_kept) return true;
-  rung_ = choice_->rung;
-  session()->rungs().AddViewer(*rung_);
+  choice_ = std::move(choice);
+  if (encoding_.empty()) return true;
   CLEAVE_RETURN_IF_ERROR(Refresh(state));
   return true;
 }
@@ -209,6 +202,7 @@ absl::StatusOr<bool> FrameStreamCall::Start(const HostedSession::State& state) {
   CLEAVE_ASSIGN_OR_RETURN(*start.mutable_header(), frames().ReadHeader());
   start.set_rung(RungMessage(choice_->rung));
   start.set_tolerance(choice_->tolerance);
+  start.set_outside_tolerance(choice_->outside_tolerance);
   tell_pieces_ = !start.resumed();
   start.set_first_frame(next_frame_);
   start.set_mesh_asset(session()->config().scene().mesh().asset());

@@ -11,9 +11,9 @@
 
 #include "absl/status/status.h"
 #include "cleave/v1/frame.pb.h"
-#include "core/stream/rungs.h"
 #include "server/gateway/drain.h"
 #include "server/gateway/executor.h"
+#include "server/gateway/frame_choice.h"
 #include "server/gateway/rpc/session_call.h"
 #include "server/gateway/session_store.h"
 #include "server/session/event_log.h"
@@ -21,8 +21,8 @@
 namespace cleave {
 
 // One StreamFrames call: reads committed frames from the session's log, or from that of a coarser
-// rung, and sends them in chunks, with one write under way at a time, so that a slow viewer costs
-// one chunk of memory and nobody else any time.
+// rung or a region, and sends them in chunks, with one write under way at a time, so that a slow
+// viewer costs one chunk of memory and nobody else any time.
 class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesResponse>,
                               public SessionCall {
  public:
@@ -47,7 +47,7 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   absl::Status Refresh(const HostedSession::State& state);
   // Of the log that is sent.
   FrameLogReader& frames() {
-    return rung_ ? session()->rungs().frames(*rung_) : session()->frames();
+    return encoding_.empty() ? session()->frames() : session()->rungs().frames(encoding_);
   }
   // Sends the next piece of what is due.
   absl::Status Continue(const HostedSession::State& state);
@@ -69,9 +69,9 @@ class FrameStreamCall final : public grpc::ServerWriteReactor<v1::StreamFramesRe
   const v1::StreamFramesRequest request_;
   v1::StreamFramesResponse message_;
 
-  std::optional<RungChoice> choice_;  // what is sent, once that is known
-  std::optional<Rung> rung_;          // where that is encoded anew
-  int64_t head_ = -1;                 // newest frame of it that may be sent
+  std::optional<FrameChoice> choice_;  // what is sent, once that is known
+  std::string encoding_;               // where that is encoded anew: its name
+  int64_t head_ = -1;                  // newest frame of it that may be sent
   bool started_ = false;
   bool ended_ = false;     // StreamEnd was sent
   bool answered_ = false;  // Finish was called
