@@ -91,6 +91,12 @@ class GalleryMaker {
     folder_ = std::make_unique<GalleryFolder>(options_.out, gallery_.build, options_.width);
     if (options_.fresh) CLEAVE_RETURN_IF_ERROR(folder_->Clear());
     CLEAVE_RETURN_IF_ERROR(folder_->Make());
+    for (const GalleryScene& scene : gallery_.scenes) {
+      if (scene.coarsest < options_.coarseness) {
+        PrintNote(absl::StrCat(scene.name, " runs at coarseness ", scene.coarsest,
+                               ", the coarsest that it takes"));
+      }
+    }
     const std::vector<GalleryRun> runs =
         RunsOf(gallery_.scenes, seeds, layouts, options_.coarseness);
     CLEAVE_RETURN_IF_ERROR(RunAll(runs));
@@ -260,7 +266,8 @@ void AddGallery(CLI::App& app, Program& program) {
       ->check(CLI::IsMember({"lattice", "unstructured", "both"}))
       ->capture_default_str();
   verb->add_option("--coarseness", options->coarseness,
-                   "Cells so many times as long as at full size: 2 is some 8 to 16 times as fast")
+                   "Cells so many times as long as at full size, or as long as the scene takes: "
+                   "2 is some 8 to 16 times as fast")
       ->check(NumberWithin(0.1, 100))
       ->capture_default_str()
       ->type_name("FACTOR");
@@ -287,7 +294,7 @@ void AddGallery(CLI::App& app, Program& program) {
       "Prints the page's path.\n\n"
       "Examples:\n"
       "  cleave gallery --out out/gallery --jobs 8\n"
-      "  cleave gallery tube steak --out out/look --coarseness 2 --seeds 1 --layout lattice\n");
+      "  cleave gallery --out out/look --coarseness 100 --seeds 1 --layout lattice\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return GalleryMaker(shared, *options).Make(); };
   });

@@ -38,7 +38,7 @@ std::vector<GalleryRun> RunsOf(const std::vector<GalleryScene>& scenes,
           const bool shown = scene.pictured.empty() ||
                              std::find(scene.pictured.begin(), scene.pictured.end(), variant) !=
                                  scene.pictured.end();
-          runs.push_back({scene.name, variant, layout, seed, coarseness,
+          runs.push_back({scene.name, variant, layout, seed, std::min(coarseness, scene.coarsest),
                           shown && seed == seeds.front() && layout == layouts.front()});
         }
       }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/mesh_check.h"
+#include "core/scene/validate.h"
 #include "tests/scenes/demonstration.h"
 
 namespace cleave {
@@ -64,6 +66,20 @@ TEST(Criteria, OfEveryDemonstrationNameItsOwnVariants) {
     for (const Criterion& criterion : kind.criteria) {
       EXPECT_FALSE(criterion.conditions.empty()) << kind.name << ": " << criterion.text;
     }
+  }
+}
+
+// On the lattice, which is quick to make; short tests have most of the others.
+TEST(Criteria, OfEveryDemonstrationHaveBodiesThatTheyCanBeTriedOnWhereTheyAreCoarsest) {
+  for (const DemonstrationKind& kind : DemonstrationKinds()) {
+    const Setting setting{kind.criteria[0].variants[0], 1, MeshLayout::kJitteredLattice,
+                          kind.coarsest};
+    const auto made = kind.make(setting);
+    ASSERT_TRUE(made.ok()) << kind.name << ": " << made.status();
+    TetMesh mesh = made->mesh;
+    const Faults faults = CheckAndOrientMesh(mesh);
+    EXPECT_TRUE(faults.ok()) << kind.name << ": " << faults.ToStatus();
+    EXPECT_TRUE(ValidateSceneWithMesh(made->scene, mesh).ok()) << kind.name;
   }
 }
 

@@ -68,6 +68,7 @@ struct DemonstrationKind {
   Metrics (*measure)(const Demonstration&, const Incidence&, const Run&);
   std::vector<Criterion> criteria;
   std::vector<std::string> pictured = {};  // variants of the gallery; empty: all of the criteria
+  double coarsest = 1;  // coarseness of short tests: with longer cells the body is no longer itself
 };
 std::span<const DemonstrationKind> DemonstrationKinds();
 // NotFound, with the names that there are.

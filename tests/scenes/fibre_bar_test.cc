@@ -5,9 +5,7 @@
 namespace cleave {
 namespace {
 
-TEST(FibreBar, StrengthFallsWithTheAngleAndCracksFollowFibres) {
-  ExpectCriteria("fibre_bar", {.seed = 1, .coarseness = 1.4});
-}
+TEST(FibreBar, StrengthFallsWithTheAngleAndCracksFollowFibres) { ExpectCriteria("fibre_bar"); }
 
 TEST(FullFibreBar, StrengthFallsWithTheAngleAndCracksFollowFibres) {
   ExpectCriteriaInFull("fibre_bar");

@@ -6,7 +6,7 @@ namespace cleave {
 namespace {
 
 TEST(Figure, OnlyTheArmWithTheRingComesOff) {
-  ExpectCriteria("figure", {.seed = 1, .coarseness = 1.3});
+  ExpectCriteria("figure", MeshLayout::kJitteredLattice);
 }
 
 TEST(FullFigure, OnlyTheArmWithTheRingComesOff) { ExpectCriteriaInFull("figure"); }

@@ -10,7 +10,7 @@ namespace {
 // Implicit steps reach all of the body that is joined to the node, with most of it near by; the
 // other body in the mesh feels the solver's tolerance only.
 TEST(LocalityDemonstration, AnImpurityIsFeltOnlyOnceAnEdgeOfItsNodeBreaks) {
-  ExpectCriteria("locality", {.seed = 1, .coarseness = 1.5});
+  ExpectCriteria("locality");
 }
 
 }  // namespace

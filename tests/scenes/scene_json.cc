@@ -136,6 +136,7 @@ std::string KindsJson() {
                                  ",\"paper\":", Quoted(kind.paper),
                                  ",\"variants\":", List(kind.variants, Quoted),
                                  ",\"pictured\":", List(kind.pictured, Quoted),
+                                 ",\"coarsest\":", Number(kind.coarsest),
                                  ",\"criteria\":", List(kind.criteria, CriterionJson), "}");
                            }),
                       "}");

@@ -57,10 +57,11 @@ inline void ExpectHolds(const Criterion& criterion, std::span<const Trial> trial
                              << finding.met << " of " << trials.size() << " meet" << measured;
 }
 
-// Of one coarse body of each variant; full-size criteria are left out.
-inline void ExpectCriteria(const std::string& name, const Setting& setting) {
+// Of one body of each variant, as coarse as they can be; full-size criteria are left out.
+inline void ExpectCriteria(const std::string& name, MeshLayout layout = MeshLayout::kUnstructured) {
   const auto kind = FindDemonstration(name);
   ASSERT_TRUE(kind.ok()) << kind.status();
+  const Setting setting{.seed = 1, .layout = layout, .coarseness = (*kind)->coarsest};
   std::vector<Criterion> criteria = (*kind)->criteria;
   std::erase_if(criteria, [](const Criterion& criterion) { return criterion.full_size; });
   const std::vector<Trial> trials = {MustTry(name, setting, VariantsOf(criteria))};

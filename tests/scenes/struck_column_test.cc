@@ -5,9 +5,7 @@
 namespace cleave {
 namespace {
 
-TEST(StruckColumn, BreaksWhereItsImpuritiesAre) {
-  ExpectCriteria("struck_column", {.seed = 1, .coarseness = 1.7});
-}
+TEST(StruckColumn, BreaksWhereItsImpuritiesAre) { ExpectCriteria("struck_column"); }
 
 TEST(FullStruckColumn, BreaksWhereItsImpuritiesAre) { ExpectCriteriaInFull("struck_column"); }
 

@@ -48,6 +48,7 @@ struct GalleryScene {
   std::vector<std::string> variants;  // that criteria are about
   std::vector<std::string> controls;  // of these, those that only controls are about
   std::vector<std::string> pictured;  // of these; empty: all
+  double coarsest = 1;                // the largest coarseness that its body takes
   std::vector<GalleryPicture> pictures = {};
   std::vector<GalleryGroup> groups = {};
   std::vector<std::string> failures = {};  // runs that ended with an error, a line each

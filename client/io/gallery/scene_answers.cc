@@ -84,6 +84,8 @@ absl::Status ForEach(const Struct& object, const std::string& name, const ReadOb
 absl::Status ReadScene(const Struct& object, GalleryScene& scene) {
   CLEAVE_RETURN_IF_ERROR(ReadAll(object, "name", scene.name, "title", scene.title, "paper",
                                  scene.paper, "pictured", scene.pictured));
+  CLEAVE_ASSIGN_OR_RETURN(const Value* coarsest, Member(object, "coarsest", Value::kNumberValue));
+  scene.coarsest = coarsest->number_value();
   const auto add = [](const std::string& variant, std::vector<std::string>& variants) {
     if (std::find(variants.begin(), variants.end(), variant) == variants.end())
       variants.push_back(variant);

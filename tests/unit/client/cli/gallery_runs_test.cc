@@ -42,6 +42,14 @@ TEST(GalleryRuns, AreOfEveryVariantAndPicturedOnce) {
   EXPECT_EQ(pictured, 1);
 }
 
+TEST(GalleryRuns, AreNoCoarserThanTheirSceneTakes) {
+  const GalleryScene fine{"s", "t", "p", {"a"}, {}, {}, 1.5},
+      coarse{"r", "t", "p", {"a"}, {}, {}, 4};
+  const auto runs = RunsOf({fine, coarse}, {1}, {"lattice"}, 3);
+  EXPECT_EQ(runs[0].coarseness, 1.5);
+  EXPECT_EQ(runs[1].coarseness, 3);
+}
+
 class GalleryFolderTest : public testing::Test {
  protected:
   const TemporaryDirectory directory_;

@@ -95,12 +95,13 @@ TEST(GalleryPage, HoldsItsPicturesAndMarksThoseOfControls) {
 
 TEST(SceneAnswers, ListsVariantsOfCriteriaAndWhichOnlyControlsHave) {
   const auto scenes = ParseSceneList(
-      R"({"scenes":[{"name":"s","title":"t","paper":"p","variants":["a","b","c"],"pictured":["a"],
+      R"({"scenes":[{"name":"s","title":"t","paper":"p","variants":["a","b","c"],"pictured":["a"],"coarsest":1.5,
       "criteria":[{"control":false,"variants":["a"]},{"control":true,"variants":["b","a"]}]}]})");
   ASSERT_TRUE(scenes.ok()) << scenes.status();
   EXPECT_THAT((*scenes)[0].variants, testing::ElementsAre("a", "b"));
   EXPECT_THAT((*scenes)[0].controls, testing::ElementsAre("b"));
   EXPECT_THAT((*scenes)[0].pictured, testing::ElementsAre("a"));
+  EXPECT_EQ((*scenes)[0].coarsest, 1.5);
 }
 
 TEST(SceneAnswers, ReadsFindings) {
