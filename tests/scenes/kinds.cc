@@ -144,12 +144,12 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
       {"drawn_slab",
        "A slab with a drawing pushed through it",
        "Fig. 10",
-       {"drawn", "turned", "plain"},
+       {"drawn", "turned", "plain", "shuffled"},
        MakeDrawnSlab,
        MeasureDrawnSlab,
        DrawnSlabCriteria(),
        {},
-       1.25},
+       1.6},
 #endif
   };
   return kKinds;

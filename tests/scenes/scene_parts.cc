@@ -110,6 +110,22 @@ std::vector<uint8_t> ImpureNodes(const Scene& scene, const TetMesh& mesh) {
   return flags;
 }
 
+std::vector<uint8_t> MarkedNodes(const Scene& scene, const TetMesh& mesh) {
+  const Incidence incidence = BuildIncidence(mesh);
+  const std::vector<uint8_t> marked = BakeImpurities(scene, mesh, incidence.edges).touched_edges;
+  std::vector<uint8_t> flags(mesh.rest_positions.size(), 0);
+  for (size_t edge = 0; edge < marked.size(); ++edge) {
+    if (marked[edge] == 0) continue;
+    for (const int32_t node : incidence.edges[edge]) flags[static_cast<size_t>(node)] = 1;
+  }
+  return flags;
+}
+
+void DealOut(Scene& scene, const std::vector<uint8_t>& nodes, uint32_t seed) {
+  scene.impurities->layers.resize(1);
+  scene.impurities->layers[0].source = NodeValues{MapOf(Shuffled(nodes, seed))};
+}
+
 Vec3 InPlane(double degrees) {
   const double angle = degrees * std::numbers::pi / 180;
   return {std::cos(angle), std::sin(angle), 0};

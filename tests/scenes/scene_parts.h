@@ -55,6 +55,14 @@ std::vector<double> MapOf(const std::vector<uint8_t>& flags);
 // scene has impurities that fit the mesh.
 std::vector<uint8_t> ImpureNodes(const Scene& scene, const TetMesh& mesh);
 
+// Nodes at the ends of edges that the scene's layers mark, besides those that ImpureNodes gives.
+// Precondition as above.
+std::vector<uint8_t> MarkedNodes(const Scene& scene, const TetMesh& mesh);
+
+// The control of a scene whose layers all do the same: what they do to those nodes, and to the edges
+// between them, dealt out to as many others.
+void DealOut(Scene& scene, const std::vector<uint8_t>& nodes, uint32_t seed);
+
 // Unit vector in the x-y plane, `degrees` from x towards y.
 Vec3 InPlane(double degrees);
 
