@@ -92,7 +92,11 @@ void SurfaceDistance::Test(const Triangle& triangle, const Eigen::Vector3d& poin
   const auto offer = [&](const Eigen::Vector3d& closest, const Eigen::Vector3d& normal,
                          double second, double third) {
     const double squared = (point - closest).squaredNorm();
-    if (squared < best.squared) best = {squared, closest, normal, &triangle, second, third};
+    // Of triangles as near, as round a corner, the first: whatever else the surface has.
+    const bool earlier =
+        squared == best.squared && best.triangle != nullptr && triangle.id < best.triangle->id;
+    if (squared < best.squared || earlier)
+      best = {squared, closest, normal, &triangle, second, third};
   };
   const auto offer_corner = [&](size_t corner) {
     offer(triangle.corners[corner], triangle.vertices[corner], corner == 1 ? 1 : 0,
@@ -149,8 +153,8 @@ void SurfaceDistance::Search(int32_t node, const Eigen::Vector3d& point, Closest
     std::swap(near, far);
     std::swap(near_squared, far_squared);
   }
-  if (near_squared < best.squared) Search(near, point, best);
-  if (far_squared < best.squared) Search(far, point, best);
+  if (near_squared <= best.squared) Search(near, point, best);
+  if (far_squared <= best.squared) Search(far, point, best);
 }
 
 SignedDistance SurfaceDistance::At(const Eigen::Vector3d& point) const {

@@ -34,7 +34,8 @@ class SurfaceDistance {
                   const std::vector<std::array<int32_t, 3>>& triangles);
 
   SignedDistance At(const Eigen::Vector3d& point) const;
-  // The surface need not be closed for this.
+  // The surface need not be closed for this. Of triangles that are as near the first counts, so
+  // that leaving others out changes nothing.
   SurfacePoint ClosestPoint(const Eigen::Vector3d& point) const;
 
   int64_t bytes() const { return BytesOf(triangles_.size()); }

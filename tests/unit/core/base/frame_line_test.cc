@@ -11,8 +11,9 @@ TEST(FrameLineTest, AWholeLineNamesItsFrame) {
 }
 
 TEST(FrameLineTest, ATornOrForeignLineHasNone) {
-  for (const char* line : {"", "{", R"({"frame":)", R"({"frame":1)", R"({"frame":12,"time":0.)",
-                           R"({"frame":x,"time":0.5})", R"({"time":0.5,"frame":12})"})
+  for (const char* line :
+       {"", "{", R"({"frame":)", R"({"frame":1)", R"({"frame":12,"time":0.)",
+        R"({"frame":x,"time":0.5})", R"({"frame":-7})", R"({"time":0.5,"frame":12})"})
     EXPECT_EQ(FrameOfLine(line), -1) << line;
 }
 

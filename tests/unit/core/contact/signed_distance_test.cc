@@ -188,5 +188,30 @@ TEST(SurfaceDistance, WeightsLieBetweenTheCornersOfAnyTriangle) {
   }
 }
 
+TEST(SurfaceDistance, OfTrianglesAsNearTheFirstIsTheClosestWhateverElseThereIs) {
+  // A grid of squares of two triangles, and points above their corners, which up to six share.
+  constexpr int32_t kSide = 9;
+  std::vector<Vec3> vertices;
+  std::vector<std::array<int32_t, 3>> triangles;
+  for (int32_t i = 0; i < kSide; ++i) {
+    for (int32_t j = 0; j < kSide; ++j) {
+      const int32_t at = static_cast<int32_t>(vertices.size());
+      vertices.push_back({static_cast<double>(i), static_cast<double>(j), 0});
+      if (i == 0 || j == 0) continue;
+      triangles.push_back({at - kSide - 1, at - 1, at});
+      triangles.push_back({at - kSide - 1, at, at - kSide});
+    }
+  }
+  std::reverse(triangles.begin(), triangles.end());
+  const SurfaceDistance surface(vertices, triangles);
+  for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+    const auto first = std::find_if(triangles.begin(), triangles.end(), [&](const auto& corners) {
+      return std::count(corners.begin(), corners.end(), static_cast<int32_t>(vertex)) > 0;
+    });
+    const Vec3& at = vertices[vertex];
+    EXPECT_EQ(surface.ClosestPoint({at[0], at[1], 0.5}).triangle, first - triangles.begin());
+  }
+}
+
 }  // namespace
 }  // namespace cleave
