@@ -53,29 +53,11 @@ void SetRay(const Vector3f& origin, const Vector3f& direction, RTCRay& ray) {
 
 }  // namespace
 
-LitScene::Solid::Solid(const ShownSurface& of) : surface(of), normals(CornerNormals(of)) {}
+LitSolids::Solid::Solid(const ShownSurface& of) : surface(of), normals(CornerNormals(of)) {}
 
-LitScene::LitScene(RTCDeviceTy* device, const ShownSurface& surface, const ShownSurface& props,
-                   const Camera& camera, const RenderStyle& style)
-    : body_(surface),
-      props_(props),
-      origin_(camera.scene_center),
-      eye_(Local(camera.position)),
-      right_(ToFloat(camera.right) * static_cast<float>(camera.half_width)),
-      up_(ToFloat(camera.up) * static_cast<float>(camera.half_height)),
-      forward_(ToFloat(camera.forward)),
-      radius_(static_cast<float>(camera.scene_radius)),
-      ground_up_(ToFloat(camera.ground_normal)),
-      // A hair below what stands on it, so that soles do not fight with it.
-      ground_height_(static_cast<float>(camera.ground_height - Dot(camera.ground_normal, origin_)) -
-                     1e-3f * radius_),
-      offset_(2e-4f * radius_) {
-  // Over the camera's right shoulder: FrameCamera stands to the right of the square view, so that
-  // the faces which it sees besides the front are lit, and shadows fall to the left and away.
-  const Vector3f level = (forward_ - ground_up_ * ground_up_.dot(forward_)).normalized();
-  const Vector3f side = ToFloat(camera.right);
-  sun_ = (ground_up_ + 0.60f * side - 0.62f * level).normalized();
-  sun_strength_ = kSunShare / std::max(sun_.dot(ground_up_), 0.1f);
+LitSolids::LitSolids(RTCDeviceTy* device, const ShownSurface& surface, const ShownSurface& props,
+                     const Vec3& origin, const RenderStyle& style)
+    : body_(surface), props_(props), origin_(origin) {
   BuildColors(style);
   scene_ = rtcNewScene(device);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
@@ -84,13 +66,34 @@ LitScene::LitScene(RTCDeviceTy* device, const ShownSurface& surface, const Shown
   rtcCommitScene(scene_);
 }
 
-LitScene::~LitScene() { rtcReleaseScene(scene_); }
+LitSolids::~LitSolids() { rtcReleaseScene(scene_); }
 
-Vector3f LitScene::Local(const Vec3& point) const {
+LitScene::LitScene(const LitSolids& solids, const Camera& camera)
+    : solids_(solids),
+      eye_(solids.Local(camera.position)),
+      right_(ToFloat(camera.right) * static_cast<float>(camera.half_width)),
+      up_(ToFloat(camera.up) * static_cast<float>(camera.half_height)),
+      forward_(ToFloat(camera.forward)),
+      radius_(static_cast<float>(camera.scene_radius)),
+      ground_up_(ToFloat(camera.ground_normal)),
+      // A hair below what stands on it, so that soles do not fight with it.
+      ground_height_(
+          static_cast<float>(camera.ground_height - Dot(camera.ground_normal, solids.origin())) -
+          1e-3f * radius_),
+      offset_(2e-4f * radius_) {
+  // Over the camera's right shoulder: FrameCamera stands to the right of the square view, so that
+  // the faces which it sees besides the front are lit, and shadows fall to the left and away.
+  const Vector3f level = (forward_ - ground_up_ * ground_up_.dot(forward_)).normalized();
+  const Vector3f side = ToFloat(camera.right);
+  sun_ = (ground_up_ + 0.60f * side - 0.62f * level).normalized();
+  sun_strength_ = kSunShare / std::max(sun_.dot(ground_up_), 0.1f);
+}
+
+Vector3f LitSolids::Local(const Vec3& point) const {
   return ToFloat({point[0] - origin_[0], point[1] - origin_[1], point[2] - origin_[2]});
 }
 
-void LitScene::BuildGeometry(RTCDeviceTy* device, const Solid& solid, uint32_t id) {
+void LitSolids::BuildGeometry(RTCDeviceTy* device, const Solid& solid, uint32_t id) {
   const ShownSurface& surface = solid.surface;
   if (surface.triangles.empty()) return;
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -146,13 +149,8 @@ Vector3f LitScene::Irradiance(const Hit& hit, uint32_t sample, float& shine) con
 
 Hit LitScene::Trace(float x, float y) const {
   const Vector3f direction = (forward_ + x * right_ + y * up_).normalized();
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit ray{};
-  SetRay(eye_, direction, ray.ray);
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene_, &context, &ray);
-  if (ray.hit.geomID != RTC_INVALID_GEOMETRY_ID) return SurfaceHit(direction, ray);
+  Hit hit;
+  if (solids_.Meets(eye_, direction, hit)) return hit;
   return GroundHit(direction);
 }
 
@@ -163,6 +161,22 @@ bool LitScene::Blocked(const Vector3f& origin, const Vector3f& direction) const 
   const float limit = 1.02f * radius_;
   const float apart = to_center.squaredNorm();
   if (apart > limit * limit && (along < 0 || apart - along * along > limit * limit)) return false;
+  return solids_.Blocks(origin, direction);
+}
+
+bool LitSolids::Meets(const Vector3f& eye, const Vector3f& direction, Hit& hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit ray{};
+  SetRay(eye, direction, ray.ray);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = SurfaceHit(eye, direction, ray);
+  return true;
+}
+
+bool LitSolids::Blocks(const Vector3f& origin, const Vector3f& direction) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay ray{};
@@ -178,7 +192,7 @@ Vector3f LitScene::Sky(const Vector3f& direction) const {
   return (1 - kSunShare) * (0.82f + 0.27f * height) * kSkyTint;
 }
 
-void LitScene::BuildColors(const RenderStyle& style) {
+void LitSolids::BuildColors(const RenderStyle& style) {
   const ShownSurface& surface = body_.surface;
   props_.colors.assign(props_.surface.triangles.size(), kPropAlbedo);
   if (style.color_by == ColorBy::kStrain) {
@@ -214,7 +228,8 @@ void LitScene::BuildColors(const RenderStyle& style) {
   }
 }
 
-Hit LitScene::SurfaceHit(const Vector3f& direction, const RTCRayHit& ray) const {
+Hit LitSolids::SurfaceHit(const Vector3f& eye, const Vector3f& direction,
+                          const RTCRayHit& ray) const {
   const Solid& solid = ray.hit.geomID == 0 ? body_ : props_;
   const ShownSurface& surface = solid.surface;
   const size_t triangle = ray.hit.primID;
@@ -222,7 +237,7 @@ Hit LitScene::SurfaceHit(const Vector3f& direction, const RTCRayHit& ray) const 
   const std::array<float, 3> weights = {1 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v};
   Hit hit;
   hit.distance = ray.ray.tfar;
-  hit.position = eye_ + hit.distance * direction;
+  hit.position = eye + hit.distance * direction;
   hit.normal = Vector3f(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z).normalized();
   const float turn = hit.normal.dot(direction) > 0 ? -1.0f : 1.0f;
   hit.normal *= turn;

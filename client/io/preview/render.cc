@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -61,17 +62,18 @@ LitPixel CastPixel(const LitScene& scene, int x, int y, int width, int height, i
   return pixel;
 }
 
-absl::Status CheckRender(const ShownSurface& surface, const RenderStyle& style, int width,
-                         int height) {
-  Faults faults;
+void CheckPicture(int samples, int width, int height, Faults& faults) {
   for (const auto& [name, side] : {std::pair{"width", width}, std::pair{"height", height}}) {
     if (side < 1 || side > kMaxImageSide) {
       faults.Error(name, absl::StrCat(side, " is outside [1, ", kMaxImageSide, "]"));
     }
   }
-  if (style.samples < 1 || style.samples > 8) {
-    faults.Error("samples", absl::StrCat(style.samples, " is outside [1, 8]"));
+  if (samples < 1 || samples > 8) {
+    faults.Error("samples", absl::StrCat(samples, " is outside [1, 8]"));
   }
+}
+
+void CheckLook(const ShownSurface& surface, const RenderStyle& style, Faults& faults) {
   if (style.color_by == ColorBy::kStrain) {
     if (!(style.strain_limit > 0 && std::isfinite(style.strain_limit))) {
       faults.Error("strain_limit", absl::StrCat(style.strain_limit, " is not above 0"));
@@ -84,8 +86,6 @@ absl::Status CheckRender(const ShownSurface& surface, const RenderStyle& style, 
     faults.Error("color_by", "the surface carries no damages");
   if (style.color_by == ColorBy::kImpurity && surface.impurities.size() != surface.points.size())
     faults.Error("color_by", "the surface carries no impurities");
-  CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
-  return CheckShownSurface(surface);
 }
 
 }  // namespace
@@ -104,19 +104,43 @@ absl::StatusOr<Renderer> Renderer::Create() {
 absl::StatusOr<Image> Renderer::Render(const ShownSurface& surface, const Camera& camera,
                                        const RenderStyle& style, int width, int height,
                                        const ShownSurface& props) {
-  CLEAVE_RETURN_IF_ERROR(CheckRender(surface, style, width, height));
+  Faults faults;
+  CheckPicture(style.samples, width, height, faults);
+  CheckLook(surface, style, faults);
+  CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
+  CLEAVE_ASSIGN_OR_RETURN(const auto solids, Prepare(surface, props, camera.scene_center, style));
+  return Draw(*solids, camera, style.samples, width, height);
+}
+
+absl::StatusOr<std::shared_ptr<const LitSolids>> Renderer::Prepare(const ShownSurface& surface,
+                                                                   const ShownSurface& props,
+                                                                   const Vec3& center,
+                                                                   const RenderStyle& style) {
+  Faults faults;
+  CheckLook(surface, style, faults);
+  CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
+  CLEAVE_RETURN_IF_ERROR(CheckShownSurface(surface));
   CLEAVE_RETURN_IF_ERROR(CheckShownSurface(props));
-  const LitScene scene(device_.get(), surface, props, camera, style);
+  auto solids = std::make_shared<const LitSolids>(device_.get(), surface, props, center, style);
   if (const RTCError error = rtcGetDeviceError(device_.get());
-      error != RTC_ERROR_NONE || !scene.ready()) {
+      error != RTC_ERROR_NONE || !solids->ready()) {
     return absl::ResourceExhaustedError(
         absl::StrCat("Embree cannot take the surface: error ", static_cast<int>(error)));
   }
+  return solids;
+}
+
+absl::StatusOr<Image> Renderer::Draw(const LitSolids& solids, const Camera& camera, int samples,
+                                     int width, int height) {
+  Faults faults;
+  CheckPicture(samples, width, height, faults);
+  CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
+  const LitScene scene(solids, camera);
   LitPixels pixels(width, height);
   ParallelFor(height, 1, [&](int64_t begin, int64_t end) {
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < width; ++x) {
-        pixels.at(x, y) = CastPixel(scene, x, y, width, height, style.samples);
+        pixels.at(x, y) = CastPixel(scene, x, y, width, height, samples);
       }
     }
   });

@@ -14,6 +14,8 @@ struct RTCDeviceTy;
 
 namespace cleave {
 
+class LitSolids;
+
 enum class ColorBy {
   kRegion,  // the region's colour outside, a light one inside cracks
   kPiece,   // a colour a piece, lighter inside cracks
@@ -46,6 +48,16 @@ class Renderer {
   absl::StatusOr<Image> Render(const ShownSurface& surface, const Camera& camera,
                                const RenderStyle& style, int width, int height,
                                const ShownSurface& props = {});
+
+  // The same in two steps, for pictures of one frame from several sides: what does not depend on
+  // the camera is made once. `center` is about the middle of what will be seen; the surfaces must
+  // outlive what is prepared of them, and that must not outlive the renderer.
+  absl::StatusOr<std::shared_ptr<const LitSolids>> Prepare(const ShownSurface& surface,
+                                                           const ShownSurface& props,
+                                                           const Vec3& center,
+                                                           const RenderStyle& style);
+  absl::StatusOr<Image> Draw(const LitSolids& solids, const Camera& camera, int samples, int width,
+                             int height);
 
  private:
   struct Release {

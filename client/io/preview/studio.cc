@@ -133,18 +133,30 @@ absl::Status Studio::FollowTo(int64_t position) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
+absl::Status Studio::Show(int64_t position) {
+  if (shown_ == position) return absl::OkStatus();
+  shown_ = -1;
+  solids_.reset();
   // Colours of pieces follow from all frames; nothing else in a picture does.
   if (options_.color_by == ColorBy::kPiece) CLEAVE_RETURN_IF_ERROR(FollowTo(position));
   CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
   CLEAVE_RETURN_IF_ERROR(sequence_.Advance(frame));
+  shown_props_ = PropsAt(options_.props, frame.frame);
   CLEAVE_ASSIGN_OR_RETURN(
-      Image image, renderer_.Render(sequence_.surface(), camera, style_, options_.width, height_,
-                                    PropsAt(options_.props, frame.frame)));
+      solids_, renderer_.Prepare(sequence_.surface(), shown_props_, camera_.scene_center, style_));
+  shown_time_ = frame.time;
+  shown_ = position;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
+  CLEAVE_RETURN_IF_ERROR(Show(position));
+  CLEAVE_ASSIGN_OR_RETURN(
+      Image image, renderer_.Draw(*solids_, camera, style_.samples, options_.width, height_));
   const double size = LetterHeight();
   const double margin = 1.3 * size;
   const double baseline = height_ - margin;
-  const std::string time = TimeLabel(frame.time, step_, survey_.times.back());
+  const std::string time = TimeLabel(shown_time_, step_, survey_.times.back());
   DrawText(time, margin, baseline, {.height = size, .pen = 0.16}, image);
   const int64_t pieces = sequence_.piece_count();
   const std::string counts = absl::StrFormat(

@@ -50,6 +50,8 @@ class Studio {
          const PreviewOptions& options);
   absl::Status Prepare(Stand stand);
   absl::StatusOr<Image> Draw(int64_t position, const Camera& camera);
+  // Makes a frame ready, unless it is: a turntable's pictures are all of one.
+  absl::Status Show(int64_t position);
   // Takes note of all frames before `position`.
   absl::Status FollowTo(int64_t position);
   void AddSwatches(const std::map<int32_t, RegionLook>& looks);
@@ -65,8 +67,13 @@ class Studio {
   RenderStyle style_;
   Legend legend_;
   int height_ = 0;
-  int64_t followed_ = 0;  // frames that the sequence has taken note of
-  double step_ = 0;       // s, between the frames looked at
+  // The frame that is ready to be drawn.
+  int64_t shown_ = -1;  // its position; -1: none
+  double shown_time_ = 0;
+  ShownSurface shown_props_;
+  std::shared_ptr<const LitSolids> solids_;  // of the sequence's surface
+  int64_t followed_ = 0;                     // frames that the sequence has taken note of
+  double step_ = 0;                          // s, between the frames looked at
 };
 
 }  // namespace cleave

@@ -146,13 +146,20 @@ TEST(Preview, ATurntableGoesOnceRoundOneFrame) {
   const TetMesh mesh = Bar();
   const TurntableOptions turntable{.pictures = 6, .frames_per_second = 10, .tiles = 4};
   int64_t calls = 0;
-  const auto bytes = RenderTurntable(mesh, BreakingBar(mesh), 19, turntable, Small(),
-                                     [&](int64_t done, int64_t total) {
-                                       EXPECT_EQ(done, ++calls);
-                                       EXPECT_EQ(total, 6);
-                                       return true;
-                                     });
+  int reads = 0;
+  FrameSource counted = BreakingBar(mesh);
+  counted.read = [&reads, read = counted.read](int64_t position) {
+    ++reads;
+    return read(position);
+  };
+  const auto bytes =
+      RenderTurntable(mesh, counted, 19, turntable, Small(), [&](int64_t done, int64_t total) {
+        EXPECT_EQ(done, ++calls);
+        EXPECT_EQ(total, 6);
+        return true;
+      });
   ASSERT_TRUE(bytes.ok()) << bytes.status();
+  EXPECT_EQ(reads, 2);  // to look where it goes, and to draw, however many pictures
   const WebPData data{reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size()};
   WebPAnimDecoder* decoder = WebPAnimDecoderNew(&data, nullptr);
   ASSERT_NE(decoder, nullptr);

@@ -143,6 +143,22 @@ TEST(Render, ABodyFarFromTheOriginLooksTheSame) {
   EXPECT_EQ(far_away->rgb, near_origin.rgb);
 }
 
+TEST(Render, WhatIsPreparedOnceLooksTheSameFromEverySide) {
+  const ShownSurface surface = TwoSquares();
+  const ShownSurface no_props;
+  auto renderer = Renderer::Create();
+  ASSERT_TRUE(renderer.ok()) << renderer.status();
+  const auto solids = renderer->Prepare(surface, no_props, Overhead().scene_center, RenderStyle{});
+  ASSERT_TRUE(solids.ok()) << solids.status();
+  for (const double angle : {0.0, 1.0, 2.5}) {
+    const Camera camera = Turned(Overhead(), angle);
+    const auto prepared = renderer->Draw(**solids, camera, RenderStyle{}.samples, 80, 80);
+    const auto at_once = renderer->Render(surface, camera, RenderStyle{}, 80, 80);
+    ASSERT_TRUE(prepared.ok() && at_once.ok());
+    EXPECT_EQ(prepared->rgb, at_once->rgb) << angle;
+  }
+}
+
 TEST(Render, BadInputIsRefusedByName) {
   auto renderer = Renderer::Create();
   ASSERT_TRUE(renderer.ok()) << renderer.status();
