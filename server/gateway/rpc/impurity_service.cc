@@ -13,7 +13,7 @@
 namespace cleave {
 namespace {
 
-absl::Status Answer(const v1::PreviewImpurityRequest& request, AssetStore& assets, int max_bytes,
+absl::Status Answer(const v1::PreviewImpurityRequest& request, AssetStore& assets, size_t max_bytes,
                     v1::PreviewImpurityResponse& response) {
   Faults faults;
   if (!request.scene().has_impurities())
@@ -24,11 +24,11 @@ absl::Status Answer(const v1::PreviewImpurityRequest& request, AssetStore& asset
                           PreviewImpurities(checked.scene, checked.mesh));
   response = MessageFromPreview(preview, request.with_edges());
   for (const std::string& warning : checked.warnings) response.add_warnings(warning);
-  if (const size_t bytes = response.ByteSizeLong(); bytes > static_cast<size_t>(max_bytes)) {
+  if (const size_t bytes = response.ByteSizeLong(); bytes > max_bytes) {
     response.Clear();
     return MakeError(
         absl::StatusCode::kResourceExhausted, "MESSAGE_SIZE",
-        absl::StrCat("the answer would have ", bytes, " bytes; a message has at most ", max_bytes,
+        absl::StrCat("the answer would have ", bytes, " bytes; an answer has at most ", max_bytes,
                      request.with_edges() ? ": leave the edges out, or bake without a server"
                                           : ": bake without a server"));
   }
@@ -43,7 +43,7 @@ grpc::ServerUnaryReactor* ImpurityService::PreviewImpurity(
   return AnswerFrom(checks_, context, [this, context, request, response] {
     // Nobody waits for it any more, and others wait behind it.
     if (context->IsCancelled()) return absl::CancelledError("the client is gone");
-    return Answer(*request, assets_, max_message_bytes_, *response);
+    return Answer(*request, assets_, max_answer_bytes_, *response);
   });
 }
 

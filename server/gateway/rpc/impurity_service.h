@@ -10,9 +10,9 @@ namespace cleave {
 // cleave.v1.ImpurityService. What it is given must outlive it.
 class ImpurityService final : public v1::ImpurityService::CallbackService {
  public:
-  // Previews run on `checks`; answers are at most `max_message_bytes` large.
-  ImpurityService(Executor& checks, AssetStore& assets, int max_message_bytes)
-      : checks_(checks), assets_(assets), max_message_bytes_(max_message_bytes) {}
+  // Previews run on `checks`; answers are at most `max_answer_bytes` large.
+  ImpurityService(Executor& checks, AssetStore& assets, size_t max_answer_bytes)
+      : checks_(checks), assets_(assets), max_answer_bytes_(max_answer_bytes) {}
 
   grpc::ServerUnaryReactor* PreviewImpurity(grpc::CallbackServerContext* context,
                                             const v1::PreviewImpurityRequest* request,
@@ -21,7 +21,7 @@ class ImpurityService final : public v1::ImpurityService::CallbackService {
  private:
   Executor& checks_;
   AssetStore& assets_;
-  const int max_message_bytes_;
+  const size_t max_answer_bytes_;
 };
 
 }  // namespace cleave

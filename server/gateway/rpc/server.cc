@@ -37,6 +37,9 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kMaxMessageBytes = 4 << 20;
+// Of one answer, what our own clients take: potencies of 32 million nodes, or the affected edges of
+// a body of 8 million tets.
+constexpr size_t kMaxAnswerBytes = 256 << 20;
 constexpr int kCheckThreads = 2;
 // Pressure on senders, not a budget: what all messages in flight may hold before reads slow down.
 constexpr size_t kQuotaBytes = 256 << 20;
@@ -63,6 +66,7 @@ v1::ServerInfo DescribeServer(const AssetLimits& assets) {
   limits.set_max_asset_bytes(static_cast<uint64_t>(assets.max_asset_bytes));
   limits.set_max_tets_per_session(assets.max_tets);
   limits.set_max_step_frames(kMaxStepFrames);
+  limits.set_max_answer_bytes(kMaxAnswerBytes);
   return info;
 }
 
@@ -139,7 +143,7 @@ absl::Status Serve(const GatewayOptions& options) {
   AssetService asset_service(executor, checks, *assets);
   SessionService session_service(executor, checks, *sessions, drain);
   FrameService frame_service(executor, *sessions, drain);
-  ImpurityService impurity_service(checks, *assets, kMaxMessageBytes);
+  ImpurityService impurity_service(checks, *assets, kMaxAnswerBytes);
   MaterialService material_service(checks);
   ServerService server_service(DescribeServer(options.assets));
 
