@@ -70,16 +70,42 @@ class GoldenTests:
             digest.update(self.decoder.positions.astype("<f8").tobytes())
         self.assertEqual(digest.digest(), self.load("decoded_sha256"))
 
-    def test_seeking_equals_decoding_straight(self):
-        for position in (7, 3, 12, 0, 11):
+    def test_seeking_to_every_frame_equals_decoding_straight(self):
+        straight = []
+        for row in self.file.rows:
+            self.decoder.apply(self.file.frame_bytes(row))
+            straight.append((self.decoder.positions.tobytes(), self.decoder.broken_edges.tobytes()))
+        count = len(straight)
+        for position in (5 * at % count for at in range(count)):  # each once, to and fro
             self.file.seek(position, self.decoder)
             self.assertEqual(self.decoder.state_hash, self.file.rows[position].state_hash)
+            sought = (self.decoder.positions.tobytes(), self.decoder.broken_edges.tobytes())
+            self.assertEqual(sought, straight[position], position)
 
-    def test_a_file_without_its_footer_is_walked(self):
-        end = self.file.rows[-1].offset
-        torn = stream.StreamFile(self.data[: end + 100])
-        self.assertFalse(torn.has_footer)
-        self.assertEqual(torn.rows, self.file.rows[:-1])
+    def test_a_file_torn_at_any_byte_of_a_frame_keeps_all_frames_before(self):
+        frames = [self.file.frame_bytes(row) for row in self.file.rows]
+        shortest = min(range(1, len(frames)), key=lambda at: len(frames[at]))
+        # The shortest frame in a whole file, the last behind that one alone: walks take their time.
+        whole = self.file.rows[shortest].offset
+        before = self.file.header_bytes + frames[shortest]
+        for kept, start, frame in (
+            (shortest, self.data[:whole], frames[shortest]),
+            (1, before, frames[-1]),
+        ):
+            for size in range(len(frame)):
+                torn = stream.StreamFile(start + frame[:size])
+                self.assertFalse(torn.has_footer)
+                self.assertEqual(len(torn.rows), kept, size)
+            self.assertEqual(len(stream.StreamFile(start + frame).rows), kept + 1)
+        torn = stream.StreamFile(self.data[: whole + 5])
+        self.assertEqual(torn.rows, self.file.rows[:shortest])
+
+    def test_a_torn_footer_is_made_anew(self):
+        end = self.file.rows[-1].offset + self.file.rows[-1].length
+        for size in range(end, len(self.data), 131):
+            torn = stream.StreamFile(self.data[:size])
+            self.assertFalse(torn.has_footer)
+            self.assertEqual(torn.rows, self.file.rows)
 
     def test_every_damaged_byte_is_refused_and_changes_nothing(self):
         good = self.file.frame_bytes(self.file.rows[1])
