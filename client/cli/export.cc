@@ -14,6 +14,7 @@
 #include "client/cli/number_check.h"
 #include "client/cli/products.h"
 #include "client/cli/program.h"
+#include "client/cli/render_mesh_input.h"
 #include "client/cli/run_results.h"
 #include "client/io/bake/bake.h"
 #include "client/io/export/export_series.h"
@@ -36,8 +37,7 @@ struct Options {
   int64_t first = 0;
   int64_t last = std::numeric_limits<int64_t>::max();
   int64_t stride = 1;
-  std::string render_mesh;
-  std::optional<double> render_scale;
+  RenderMeshOptions render_mesh;
   std::optional<double> rate;
   bool velocities = false;
   std::vector<std::string> of_frames;  // those given that no plot has a use for
@@ -48,6 +48,12 @@ const std::map<std::string, BakeFormat>& BakeFormats() {
                                                                      {"bake-mdd", BakeFormat::kMdd},
                                                                      {"glb", BakeFormat::kGlb},
                                                                      {"usda", BakeFormat::kUsda}};
+  return *formats;
+}
+
+const std::set<std::string>& SurfaceFormats() {
+  static const auto* formats =
+      new std::set<std::string>{"vtu", "ply", "obj", "bake-pc2", "bake-mdd", "glb", "usda"};
   return *formats;
 }
 
@@ -79,8 +85,7 @@ absl::Status CheckFormat(const Options& options) {
       faults.Error(option, absl::StrCat("goes with --format ", absl::StrJoin(formats, ", "),
                                         ", not ", options.format));
   };
-  goes_with(!options.render_mesh.empty(), "--render-mesh",
-            {"vtu", "ply", "obj", "bake-pc2", "bake-mdd", "glb", "usda"});
+  goes_with(!options.render_mesh.file.empty(), "--render-mesh", SurfaceFormats());
   goes_with(options.rate.has_value(), "--rate", {"bake-mdd", "glb", "usda"});
   goes_with(options.velocities, "--velocities", {"bake-pc2", "bake-mdd", "glb"});
   goes_with(!options.reports.empty(), "--reports", {"plot"});
@@ -91,8 +96,7 @@ absl::Status CheckFormat(const Options& options) {
   if (options.name.empty() || options.name.find('/') != std::string::npos)
     faults.Error("--name",
                  absl::StrCat("\"", options.name, "\" is no name of a file: --to says where"));
-  if (options.render_scale.has_value() && options.render_mesh.empty())
-    faults.Error("--render-scale", "is of --render-mesh, which is missing");
+  CheckRenderMeshOptions(options.render_mesh, faults);
   return faults.ToStatus();
 }
 
@@ -132,10 +136,9 @@ absl::Status Export(Program& program, const Options& options) {
   CLEAVE_ASSIGN_OR_RETURN(const FrameSource frames,
                           SelectFrames(run.recording, options.first, options.last, options.stride));
   std::optional<RenderMesh> render_mesh;
-  if (!options.render_mesh.empty()) {
-    CLEAVE_ASSIGN_OR_RETURN(
-        render_mesh,
-        LoadRenderMesh(options.render_mesh, options.render_scale.value_or(1), run.mesh));
+  if (SurfaceFormats().count(options.format) > 0) {
+    CLEAVE_ASSIGN_OR_RETURN(render_mesh,
+                            ShownRenderMesh(options.render_mesh, options.run, run.mesh));
   }
   const RenderMesh* shown = render_mesh ? &*render_mesh : nullptr;
   if (BakeFormats().count(options.format) > 0)
@@ -189,15 +192,7 @@ void AddExport(CLI::App& app, Program& program) {
       ->check(NumberAbove(0, limits::kMaxUnitScale))
       ->capture_default_str()
       ->type_name("METRES");
-  verb->add_option(
-          "--render-mesh", options->render_mesh,
-          "A fine triangle mesh (.obj, .ply, .stl) round the body at rest, which is written in "
-          "place of its surface; it follows and breaks as the body does. Not for vtu-volume")
-      ->type_name("FILE");
-  verb->add_option("--render-scale", options->render_scale,
-                   "Metres for one unit of the render mesh; default: 1")
-      ->check(NumberAbove(0, limits::kMaxUnitScale))
-      ->type_name("METRES");
+  AddRenderMeshOptions(*verb, options->render_mesh);
   verb->add_option("--reports", options->reports,
                    "For plot: the report lines; default: reports.jsonl in RUN")
       ->type_name("FILE");

@@ -92,7 +92,7 @@ void AddMesh(CLI::App& app, Program& program) {
   CLI::App* verb = app.add_subcommand(
       "mesh", "Make a body of tets of a surface, as modelling programs write them");
   auto options = std::make_shared<Options>();
-  verb->add_option("surface", options->surface, "Surface file (.obj, .ply, .stl)")
+  verb->add_option("surface", options->surface, "Surface file (.obj, .ply, .stl, .glb)")
       ->required()
       ->type_name("SURFACE");
   verb->add_option("--cell", options->resolution.cell_size, "Wanted edge length")

@@ -13,8 +13,10 @@
 #include "client/cli/console.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
+#include "client/cli/render_mesh_input.h"
 #include "client/cli/run_results.h"
 #include "client/io/series/write_aside.h"
+#include "core/base/faults.h"
 #include "core/base/status.h"
 #include "core/scene/limits.h"
 
@@ -35,8 +37,7 @@ struct Options {
   SheetOptions sheet_look;
   AnimationOptions animation_look;
   std::optional<double> azimuth, elevation;
-  std::string render_mesh;
-  std::optional<double> render_scale;
+  RenderMeshOptions render_mesh;
 };
 
 // Pictures of one recording, each written when it is drawn.
@@ -54,14 +55,12 @@ class Pictures {
             "--color impurity: there is no scene with impurities beside ", options_.run));
       }
     }
-    if (!options_.render_mesh.empty()) {
-      CLEAVE_ASSIGN_OR_RETURN(
-          render_mesh_,
-          LoadRenderMesh(options_.render_mesh, options_.render_scale.value_or(1), run_.mesh));
-      look_.render_mesh = &*render_mesh_;
-    } else if (options_.render_scale.has_value()) {
-      return absl::InvalidArgumentError("--render-scale is of --render-mesh, which is missing");
-    }
+    Faults faults;
+    CheckRenderMeshOptions(options_.render_mesh, faults);
+    CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
+    CLEAVE_ASSIGN_OR_RETURN(render_mesh_,
+                            ShownRenderMesh(options_.render_mesh, options_.run, run_.mesh));
+    if (render_mesh_.has_value()) look_.render_mesh = &*render_mesh_;
     look_.camera.azimuth = options_.azimuth;
     look_.camera.elevation = options_.elevation;
     folder_ = options_.to;
@@ -221,14 +220,7 @@ void AddPreview(CLI::App& app, Program& program) {
   verb->add_option("--elevation", options->elevation, "Lifts the camera above the ground")
       ->check(NumberWithin(-88, 88))
       ->type_name("DEGREES");
-  verb->add_option("--render-mesh", options->render_mesh,
-                   "A fine triangle mesh (.obj, .ply, .stl) round the body at rest, which is drawn "
-                   "in place of its surface; it follows and breaks as the body does")
-      ->type_name("FILE");
-  verb->add_option("--render-scale", options->render_scale,
-                   "Metres for one unit of the render mesh; default: 1")
-      ->check(NumberAbove(0, limits::kMaxUnitScale))
-      ->type_name("METRES");
+  AddRenderMeshOptions(*verb, options->render_mesh);
   verb->add_option("--title", options->look.title, "Written into the pictures");
   verb->footer(
       "Draws the sheet and the animation when nothing is chosen; prints the paths.\n"

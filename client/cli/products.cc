@@ -1,9 +1,11 @@
 #include "client/cli/products.h"
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/render_mesh_input.h"
 #include "client/cli/run_plot.h"
 #include "client/cli/run_results.h"
 #include "client/io/export/export_series.h"
@@ -59,22 +61,27 @@ absl::StatusOr<std::vector<std::string>> MakeProducts(const RunFolder& folder,
   if (options.vtu || options.ply) {
     CLEAVE_ASSIGN_OR_RETURN(potencies, RunPotencies(folder.path(), run.mesh));
   }
+  CLEAVE_ASSIGN_OR_RETURN(const std::optional<RenderMesh> render_mesh,
+                          ShownRenderMesh({}, folder.path(), run.mesh));
+  const RenderMesh* shown = render_mesh ? &*render_mesh : nullptr;
   if (options.vtu) {
     CLEAVE_ASSIGN_OR_RETURN(const ExportResult result,
                             WriteVtuSeries(run.mesh, frames, VtuContent::kSurface,
-                                           {folder.path() + "/vtu", "cleave", potencies},
+                                           {folder.path() + "/vtu", "cleave", potencies, shown},
                                            ShowingProgress("writing VTU files", interrupt)));
     paths.push_back(result.collection);
   }
   if (options.ply) {
     paths.push_back(folder.path() + "/ply");
-    CLEAVE_RETURN_IF_ERROR(WritePlySeries(run.mesh, frames, {paths.back(), "cleave", potencies},
+    CLEAVE_RETURN_IF_ERROR(WritePlySeries(run.mesh, frames,
+                                          {paths.back(), "cleave", potencies, shown},
                                           ShowingProgress("writing PLY files", interrupt))
                                .status());
   }
   if (options.preview) {
     PreviewOptions look;
     CLEAVE_RETURN_IF_ERROR(ApplyRunLook(folder.path(), run.mesh, look));
+    look.render_mesh = shown;
     look.width = 480;
     CLEAVE_ASSIGN_OR_RETURN(
         const Image sheet,

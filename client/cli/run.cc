@@ -114,6 +114,7 @@ class Run {
 
   absl::Status StartRunning() {
     head_ = session_.head_frame();
+    scene_ = session_.scene();  // other calls leave it out
     if (session_.state() == v1::SESSION_STATE_FAILED ||
         session_.state() == v1::SESSION_STATE_RUNNING)
       return absl::OkStatus();  // the stream tells
@@ -145,20 +146,16 @@ class Run {
     follow.quiet = options_.quiet;
     follow.recorder = recorder.get();
     follow.events = events.get();
-    follow.begun = [this](const std::string& mesh_asset) { return KeepMesh(mesh_asset); };
+    // From the beginning: exports and pictures of a run that goes on, or was killed, need it.
+    follow.begun = [this](const std::string& mesh_asset) {
+      return KeepMeshes(client(), scene_, mesh_asset, folder_);
+    };
     auto result = Follow(client(), program_.interrupt, follow);
     const absl::Status finished = recorder->Finish();
     if (!result.ok() && access_.embedded != nullptr)
       CLEAVE_RETURN_IF_ERROR(access_.embedded->Check());  // its end is the better reason
     if (result.ok()) CLEAVE_RETURN_IF_ERROR(finished);
     return result;
-  }
-
-  // From the beginning: exports and pictures of a run that goes on, or was killed, need it.
-  absl::Status KeepMesh(const std::string& mesh_asset) {
-    if (std::filesystem::exists(folder_.mesh())) return absl::OkStatus();
-    CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh, SessionMesh(client(), session_.name(), mesh_asset));
-    return folder_.WriteMesh(mesh);
   }
 
   // Only an embedded server's are at hand.
@@ -206,8 +203,8 @@ class Run {
   }
 
   void PrintFiles(const std::vector<std::string>& products) const {
-    for (const std::string& path :
-         {folder_.frames(), folder_.mesh(), folder_.events(), folder_.reports()})
+    for (const std::string& path : {folder_.frames(), folder_.mesh(), folder_.render_mesh(),
+                                    folder_.events(), folder_.reports()})
       if (std::filesystem::exists(path)) PrintResult(path);
     for (const std::string& path : products) PrintResult(path);
   }
@@ -225,6 +222,7 @@ class Run {
   SceneInput input_;
   ServerAccess access_;
   v1::Session session_;
+  v1::Scene scene_;  // as the session has it
   int64_t head_ = -1;
 };
 
@@ -252,13 +250,14 @@ void AddRun(CLI::App& app, Program& program) {
   verb->add_flag("--json", options->json, "A JSON line a frame on stdout, and one at the end");
   verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
   verb->footer(
-      "Leaves in DIR: frames.clv (the recorded frames), mesh.pb (the mesh, for `cleave export`\n"
-      "and `cleave preview`), events.jsonl (a line an event: edge breaks, splits, separations),\n"
-      "reports.jsonl (a line of numbers a frame; private server only), what --vtu, --ply, "
-      "--preview\n"
-      "and --plot make; and to go on with: scene.textproto (the scene as it was sent), session "
-      "(its\n"
-      "name), server/ (all that the private server holds).\n"
+      "Leaves in DIR: frames.clv (the recorded frames), mesh.pb and, of a scene that has one,\n"
+      "render_mesh.pb (for `cleave export` and `cleave preview`), events.jsonl (a line an event: "
+      "edge\n"
+      "breaks, splits, separations), reports.jsonl (a line of numbers a frame; private server "
+      "only),\n"
+      "what --vtu, --ply, --preview and --plot make; and to go on with: scene.textproto (the scene "
+      "as\n"
+      "it was sent), session (its name), server/ (all that the private server holds).\n"
       "Their paths are printed on stdout, one a line. Ctrl-C pauses after the frame in work,\n"
       "twice gives that frame up; the same command goes on.\n\n"
       "Examples:\n"

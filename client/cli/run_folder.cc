@@ -17,6 +17,13 @@
 
 namespace cleave {
 
+RunFolder RunFolder::Of(const std::string& run) {
+  std::error_code error;
+  if (std::filesystem::is_directory(run, error)) return RunFolder(run);
+  const std::string folder = std::filesystem::path(run).parent_path().string();
+  return RunFolder(folder.empty() ? "." : folder);
+}
+
 absl::Status RunFolder::Make() const { return MakeDirectories(path_); }
 
 std::optional<std::string> RunFolder::EarlierSession() const {
@@ -61,9 +68,14 @@ absl::Status RunFolder::WriteMesh(const TetMesh& body) const {
   return WriteAside(mesh(), bytes);
 }
 
+absl::Status RunFolder::WriteRenderMesh(const RenderMesh& shown) const {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeRenderMesh(shown));
+  return WriteAside(render_mesh(), bytes);
+}
+
 absl::Status RunFolder::Clear() const {
   for (const std::string& item :
-       {session(), scene(), frames(), mesh(), reports(), events(), server_data()}) {
+       {session(), scene(), frames(), mesh(), render_mesh(), reports(), events(), server_data()}) {
     std::error_code error;
     std::filesystem::remove_all(item, error);
     if (error) return absl::InternalError(absl::StrCat(item, ": ", error.message()));

@@ -16,7 +16,6 @@
 #include "client/cli/scene_input.h"
 #include "client/io/preview/scene_look.h"
 #include "client/io/scene/scene_file.h"
-#include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
 #include "core/base/stopwatch.h"
 #include "core/mesh/incidence.h"
@@ -29,16 +28,9 @@ namespace cleave {
 
 namespace {
 
-RunFolder FolderOf(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return RunFolder(path);
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  return RunFolder(folder.empty() ? "." : folder);
-}
-
 // The scene of a run, where its folder holds one.
 absl::StatusOr<std::optional<Scene>> RunScene(const std::string& path) {
-  const std::string scene_path = FolderOf(path).scene();
+  const std::string scene_path = RunFolder::Of(path).scene();
   std::error_code error;
   if (!std::filesystem::exists(scene_path, error)) return std::nullopt;
   CLEAVE_ASSIGN_OR_RETURN(const SceneFile file, ReadSceneFile(scene_path));
@@ -66,7 +58,7 @@ absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewO
   ApplySceneLook(scene, mesh, look);
   // Reports may lie elsewhere, with a server of its own; then colliders stay where the scene puts
   // them.
-  std::ifstream reports(FolderOf(path).reports());
+  std::ifstream reports(RunFolder::Of(path).reports());
   std::stringstream lines;
   lines << reports.rdbuf();
   look.props = PropsOfRun(scene, lines.str());
@@ -82,7 +74,7 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   if (!std::filesystem::exists(frames, error))
     return absl::NotFoundError(absl::StrCat(frames, ": there is no such recording"));
   std::string mesh_file = mesh_path;
-  if (mesh_file.empty()) mesh_file = FolderOf(path).mesh();
+  if (mesh_file.empty()) mesh_file = RunFolder::Of(path).mesh();
   if (mesh_path.empty() && !std::filesystem::exists(mesh_file, error))
     return absl::NotFoundError(absl::StrCat(mesh_file, ": is not there; name the mesh of ", frames,
                                             " with --mesh (a scene file will do)"));
@@ -97,23 +89,6 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
     PrintNote(absl::StrCat(frames, ": was cut after frame ", run.recording.rows.back().frame,
                            ", or is still written"));
   return run;
-}
-
-absl::StatusOr<RenderMesh> LoadRenderMesh(const std::string& path, double scale,
-                                          const TetMesh& mesh) {
-  CLEAVE_ASSIGN_OR_RETURN(SurfaceMesh surface, ReadSurfaceFile(path));
-  for (Vec3& point : surface.vertices) {
-    for (double& coordinate : point) coordinate *= scale;
-  }
-  RenderMesh render{std::move(surface.vertices), std::move(surface.triangles),
-                    std::move(surface.uvs)};
-  absl::Status status = CheckRenderMesh(render);
-  if (status.ok()) status = CheckRenderMeshFits(render, mesh.rest_positions);
-  if (!status.ok()) return absl::InvalidArgumentError(absl::StrCat(path, ": ", status.message()));
-  if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
-    PrintNote(absl::StrCat(path, " is not closed: ", open,
-                           " edges have no counterpart, and pieces will have holes there"));
-  return render;
 }
 
 absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,

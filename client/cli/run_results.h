@@ -11,7 +11,6 @@
 #include "client/io/record/recording.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/tet_mesh.h"
-#include "core/surface/render_mesh.h"
 
 namespace cleave {
 
@@ -34,12 +33,6 @@ absl::Status ApplyRunLook(const std::string& path, const TetMesh& mesh, PreviewO
 // Alpha of impurities, a node each, where the run's folder (or the .clv's) holds its scene and that
 // has impurities; else nothing. Makes the scene's model: takes the time and the memory of that.
 absl::StatusOr<std::vector<double>> RunPotencies(const std::string& path, const TetMesh& mesh);
-
-// A render mesh of the body, in metres, from a file of triangles of which one unit is `scale`
-// metres; says so where it is not closed. Errors: InvalidArgument, with the path, for what
-// CheckRenderMesh and CheckRenderMeshFits refuse; what reading the file gives.
-absl::StatusOr<RenderMesh> LoadRenderMesh(const std::string& path, double scale,
-                                          const TetMesh& mesh);
 
 // Only every `stride`-th frame from `first` to `last` (frame numbers), at most all.
 absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t first, int64_t last,

@@ -15,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "client/cli/render_mesh_input.h"
 #include "client/cpp/rpc_error.h"
 #include "client/io/impurity/layer_files.h"
 #include "client/io/impurity/trim_paint.h"
@@ -24,6 +25,7 @@
 #include "core/base/status.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/procedural.h"
+#include "core/scene/render_mesh_rules.h"
 #include "core/scene/validate.h"
 #include "proto/convert/mesh.h"
 #include "proto/convert/scene.h"
@@ -77,14 +79,30 @@ void ReadColliderSurfaces(SceneFile& file, std::vector<Fault>& faults) {
   }
 }
 
-// The rules of the scene alone, but of fields at fault already. A file as mesh stands for the asset
-// that it will be.
+void ReadRenderMesh(SceneInput& input, std::vector<Fault>& faults) {
+  const v1::RenderMeshSource& source = input.file.scene.render_mesh();
+  if (source.file().empty()) return;
+  constexpr char kField[] = "render_mesh.file";
+  auto mesh = ReadRenderMeshFile(PathBeside(input.file, source.file()));
+  if (!mesh.ok()) {
+    faults.push_back({kField, std::string(mesh.status().message())});
+    return;
+  }
+  input.render_mesh = *std::move(mesh);
+  if (const int64_t open = CountOpenEdges(input.render_mesh->triangles); open > 0)
+    input.warnings.push_back({kField, OpenEdgesNote(open)});
+}
+
+// The rules of the scene alone, but of fields at fault already. A file as mesh or render mesh
+// stands for the asset that it will be.
 void CheckScene(SceneInput& input, std::vector<Fault>& faults) {
   Faults found;
   input.scene = SceneFromMessage(input.file.scene, found);
   Scene as_sent = input.scene;
   if (std::holds_alternative<MeshFile>(as_sent.mesh.source))
     as_sent.mesh.source = MeshAsset{std::string(64, '0')};
+  if (as_sent.render_mesh && std::holds_alternative<MeshFile>(as_sent.render_mesh->source))
+    as_sent.render_mesh->source = MeshAsset{std::string(64, '0')};
   found.Append("", ValidateScene(as_sent));
   AppendWarnings("", found, input.warnings);
   const std::vector<Fault> known = faults;
@@ -102,7 +120,7 @@ absl::Status CheckWithMesh(SceneInput& input, const std::string& mesh_path) {
   const Faults mesh_faults = CheckAndOrientMesh(mesh);
   AppendWarnings(absl::StrCat(mesh_path, ": "), mesh_faults, input.warnings);
   if (!mesh_faults.ok()) return absl::InvalidArgumentError(DescribeFaults(mesh_path, mesh_faults));
-  const Faults scene_faults = ValidateSceneWithMesh(input.scene, mesh);
+  const Faults scene_faults = CheckWithBody(input, mesh);
   AppendWarnings("", scene_faults, input.warnings);
   if (!scene_faults.ok())
     return absl::InvalidArgumentError(input.file.Describe(scene_faults.errors()));
@@ -145,6 +163,7 @@ absl::Status Complete(SceneInput& input) {
         ReadLayerFiles(PathBeside(input.file, ""), *input.file.scene.mutable_impurities());
     faults.insert(faults.end(), of_layers.begin(), of_layers.end());
   }
+  ReadRenderMesh(input, faults);
   CheckScene(input, faults);
   const std::string mesh_path = MeshPath(input.file);
   if (!faults.empty()) {
@@ -189,6 +208,16 @@ absl::StatusOr<SceneInput> LoadSceneWithLayers(const std::string& path, double u
     *input.file.scene.mutable_impurities()->add_layers() = layer;
   CLEAVE_RETURN_IF_ERROR(Complete(input));
   return input;
+}
+
+Faults CheckWithBody(const SceneInput& input, const TetMesh& mesh) {
+  Faults faults = ValidateSceneWithMesh(input.scene, mesh);
+  if (input.render_mesh.has_value()) {
+    RenderMesh render = *input.render_mesh;
+    ScaleMesh(input.scene.render_mesh->unit_scale, render);
+    faults.Append("render_mesh.", CheckRenderMeshFits(render, mesh.rest_positions));
+  }
+  return faults;
 }
 
 absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input) {

@@ -10,6 +10,7 @@
 #include "cleave/v1/scene.pb.h"
 #include "client/io/scene/scene_file.h"
 #include "core/base/faults.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/scene/scene.h"
 
@@ -19,7 +20,8 @@ namespace cleave {
 struct SceneInput {
   SceneFile file;
   Scene scene;
-  std::optional<TetMesh> mesh;  // as in the mesh file: not scaled, not oriented
+  std::optional<TetMesh> mesh;            // as in the mesh file: not scaled, not oriented
+  std::optional<RenderMesh> render_mesh;  // as in its file: not scaled
   std::vector<Fault> warnings;
 };
 
@@ -36,6 +38,9 @@ absl::StatusOr<SceneInput> LoadSceneWithLayers(const std::string& path, double u
 // The mesh (m, oriented) of a scene: its file's, or built where it is procedural.
 // FailedPrecondition when it is an asset, which only a server has.
 absl::StatusOr<TetMesh> SceneMesh(const SceneInput& input);
+
+// What is wrong with the scene and its render mesh for this body (m, oriented).
+Faults CheckWithBody(const SceneInput& input, const TetMesh& mesh);
 
 // A mesh for `cleave inspect` and exporters: a mesh file, a scene file (its mesh, in metres) or the
 // mesh.pb of a run. Not checked. `unit_scale` is for the first; InvalidArgument for another than 1

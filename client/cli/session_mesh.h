@@ -3,15 +3,16 @@
 
 #include <string>
 
-#include "absl/status/statusor.h"
+#include "absl/status/status.h"
+#include "client/cli/run_folder.h"
 #include "client/cpp/client.h"
-#include "core/mesh/tet_mesh.h"
 
 namespace cleave {
 
-// The mesh (m) that a session's frames are of: its asset, fetched, in the scene's unit.
-absl::StatusOr<TetMesh> SessionMesh(Client& client, const std::string& session,
-                                    const std::string& asset);
+// Fetches what the folder of a session's recording lacks: the mesh that its frames are of and,
+// where the session's scene has one, its render mesh; both in metres.
+absl::Status KeepMeshes(Client& client, const v1::Scene& scene, const std::string& mesh_asset,
+                        const RunFolder& folder);
 
 }  // namespace cleave
 

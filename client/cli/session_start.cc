@@ -14,17 +14,26 @@ namespace cleave {
 
 absl::StatusOr<v1::Scene> SceneForServer(Client& client, const SceneInput& input, bool quiet) {
   v1::Scene scene = input.file.scene;
-  if (!input.mesh.has_value()) return scene;
   const Stopwatch watch;
   double shown = 1;  // seconds: what is over sooner needs no words
-  const auto progress = [&](int64_t done, int64_t total) {
-    if (quiet || watch.Seconds() < shown) return;
-    shown = watch.Seconds() + 2;
-    PrintNote(absl::StrCat("uploading the mesh: ", FormatBytes(static_cast<double>(done)), " of ",
-                           FormatBytes(static_cast<double>(total))));
+  const auto telling = [&](const char* what) {
+    return [&, what](int64_t done, int64_t total) {
+      if (quiet || watch.Seconds() < shown) return;
+      shown = watch.Seconds() + 2;
+      PrintNote(absl::StrCat("uploading the ", what, ": ", FormatBytes(static_cast<double>(done)),
+                             " of ", FormatBytes(static_cast<double>(total))));
+    };
   };
-  CLEAVE_ASSIGN_OR_RETURN(const UploadedMesh mesh, UploadMesh(client, *input.mesh, progress));
-  scene.mutable_mesh()->set_asset(mesh.asset);
+  if (input.mesh.has_value()) {
+    CLEAVE_ASSIGN_OR_RETURN(const UploadedMesh mesh,
+                            UploadMesh(client, *input.mesh, telling("mesh")));
+    scene.mutable_mesh()->set_asset(mesh.asset);
+  }
+  if (input.render_mesh.has_value()) {
+    CLEAVE_ASSIGN_OR_RETURN(const UploadedMesh mesh,
+                            UploadRenderMesh(client, *input.render_mesh, telling("render mesh")));
+    scene.mutable_render_mesh()->set_asset(mesh.asset);
+  }
   return scene;
 }
 

@@ -10,8 +10,8 @@
 
 namespace cleave {
 
-// The scene as a server takes it: a mesh file is uploaded and named as an asset. Shows the transfer
-// on stderr where it takes long.
+// The scene as a server takes it: a mesh file and a render mesh's are uploaded and named as assets.
+// Shows the transfer on stderr where it takes long.
 absl::StatusOr<v1::Scene> SceneForServer(Client& client, const SceneInput& input, bool quiet);
 
 // "notched-rod-3f2a" for scenes/Notched_Rod.scene.json: a valid session id that is free.

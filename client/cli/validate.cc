@@ -1,5 +1,3 @@
-#include "core/scene/validate.h"
-
 #include <memory>
 
 #include "absl/strings/str_cat.h"
@@ -24,7 +22,7 @@ absl::Status CheckProceduralMesh(const SceneInput& input) {
   if (input.mesh.has_value() || input.file.scene.mesh().has_asset()) return absl::OkStatus();
   CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh, SceneMesh(input));
   CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(mesh).ToStatus());
-  const Faults faults = ValidateSceneWithMesh(input.scene, mesh);
+  const Faults faults = CheckWithBody(input, mesh);
   PrintWarnings(faults.warnings());
   if (faults.ok()) return absl::OkStatus();
   return absl::InvalidArgumentError(input.file.Describe(faults.errors()));

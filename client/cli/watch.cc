@@ -46,19 +46,17 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
     follow.recorder = recorder.get();
     follow.events = events.get();
     follow.begun = [&](const std::string& mesh_asset) -> absl::Status {
-      if (std::filesystem::exists(folder.mesh())) return absl::OkStatus();
-      CLEAVE_ASSIGN_OR_RETURN(const TetMesh mesh, SessionMesh(client, follow.session, mesh_asset));
-      CLEAVE_RETURN_IF_ERROR(folder.WriteMesh(mesh));
-      return folder.WriteScene(scene);
+      if (!std::filesystem::exists(folder.mesh())) CLEAVE_RETURN_IF_ERROR(folder.WriteScene(scene));
+      return KeepMeshes(client, scene, mesh_asset, folder);
     };
   }
   const auto result = Follow(client, interrupt, follow);
   if (recorder != nullptr) CLEAVE_RETURN_IF_ERROR(recorder->Finish());
   if (!result.ok()) return result.status();
   if (recorder != nullptr && !options.json) {
-    PrintResult(folder.frames());
-    PrintResult(folder.mesh());
-    PrintResult(folder.events());
+    for (const std::string& path :
+         {folder.frames(), folder.mesh(), folder.render_mesh(), folder.events()})
+      if (std::filesystem::exists(path)) PrintResult(path);
   }
   if (result->interrupted && result->end.reason() == v1::END_REASON_UNSPECIFIED)
     return absl::CancelledError(absl::StrCat("left ", follow.session, " after frame ",
@@ -99,9 +97,10 @@ void AddWatch(CLI::App& app, Program& program) {
       ->required()
       ->type_name("SESSION");
   AddServerOptions(*verb, options->server, true);
-  verb->add_option(
-          "--out", options->out,
-          "Folder for the recording: frames.clv, mesh.pb, events.jsonl and scene.textproto")
+  verb->add_option("--out", options->out,
+                   "Folder for the recording: frames.clv, mesh.pb, "
+                   "events.jsonl, scene.textproto and, of a "
+                   "scene that has one, render_mesh.pb")
       ->type_name("DIR");
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
       ->check(CountWithin(0, int64_t{1} << 40))

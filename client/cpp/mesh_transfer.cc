@@ -28,9 +28,15 @@ constexpr std::chrono::seconds kStreamDeadline{3600};
 // One attempt to bring an upload to its end from where the server has it.
 class UploadAttempt {
  public:
-  UploadAttempt(Client& client, const std::string& bytes, const std::string& digest,
-                const std::string& upload_id, const TransferProgress& progress)
-      : client_(client), bytes_(bytes), digest_(digest), id_(upload_id), progress_(progress) {}
+  UploadAttempt(Client& client, v1::AssetKind kind, const std::string& bytes,
+                const std::string& digest, const std::string& upload_id,
+                const TransferProgress& progress)
+      : client_(client),
+        kind_(kind),
+        bytes_(bytes),
+        digest_(digest),
+        id_(upload_id),
+        progress_(progress) {}
 
   // Adds the bytes that were sent to `sent`.
   absl::StatusOr<v1::UploadAssetResponse> Run(int64_t& sent) {
@@ -83,7 +89,7 @@ class UploadAttempt {
     request.set_upload_id(id_);
     if (first) {
       v1::AssetSpec& spec = *request.mutable_spec();
-      spec.set_kind(v1::ASSET_KIND_TET_MESH);
+      spec.set_kind(kind_);
       spec.mutable_digest()->set_sha256(digest_);
       spec.mutable_digest()->set_size_bytes(static_cast<int64_t>(bytes_.size()));
       spec.set_compression(v1::COMPRESSION_ZSTD);
@@ -104,6 +110,7 @@ class UploadAttempt {
   }
 
   Client& client_;
+  const v1::AssetKind kind_;
   const std::string& bytes_;
   const std::string& digest_;
   const std::string& id_;
@@ -160,13 +167,8 @@ absl::Status DownloadRest(Client& client, const std::string& asset, std::string&
   return absl::OkStatus();
 }
 
-}  // namespace
-
-std::string ToHex(absl::string_view bytes) { return absl::BytesToHexString(bytes); }
-
-absl::StatusOr<UploadedMesh> UploadMesh(Client& client, const TetMesh& mesh,
-                                        const TransferProgress& progress) {
-  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(mesh));
+absl::StatusOr<UploadedMesh> Upload(Client& client, v1::AssetKind kind, const std::string& bytes,
+                                    const TransferProgress& progress) {
   const int64_t limit = static_cast<int64_t>(client.server().limits().max_asset_bytes());
   if (limit > 0 && static_cast<int64_t>(bytes.size()) > limit)
     return absl::InvalidArgumentError(absl::StrCat(
@@ -183,7 +185,7 @@ absl::StatusOr<UploadedMesh> UploadMesh(Client& client, const TetMesh& mesh,
     if (there) return uploaded;
     const int64_t sent_before = uploaded.bytes_sent;
     auto response =
-        UploadAttempt(client, bytes, digest, upload_id, progress).Run(uploaded.bytes_sent);
+        UploadAttempt(client, kind, bytes, digest, upload_id, progress).Run(uploaded.bytes_sent);
     if (response.ok()) {
       uploaded.warnings.assign(response->warnings().begin(), response->warnings().end());
       return uploaded;
@@ -205,7 +207,8 @@ absl::StatusOr<UploadedMesh> UploadMesh(Client& client, const TetMesh& mesh,
   }
 }
 
-absl::StatusOr<TetMesh> DownloadMesh(Client& client, const std::string& asset,
+// The bytes of an asset, checked against its name.
+absl::StatusOr<std::string> Download(Client& client, const std::string& asset,
                                      const TransferProgress& progress) {
   std::string bytes;
   for (int attempt = 1;; ++attempt) {
@@ -221,7 +224,35 @@ absl::StatusOr<TetMesh> DownloadMesh(Client& client, const std::string& asset,
   if (ToHex(Sha256::Of(bytes)) != asset)
     return absl::DataLossError(
         absl::StrCat("mesh ", asset, ": the bytes received are not its own"));
+  return bytes;
+}
+
+}  // namespace
+
+std::string ToHex(absl::string_view bytes) { return absl::BytesToHexString(bytes); }
+
+absl::StatusOr<UploadedMesh> UploadMesh(Client& client, const TetMesh& mesh,
+                                        const TransferProgress& progress) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeMesh(mesh));
+  return Upload(client, v1::ASSET_KIND_TET_MESH, bytes, progress);
+}
+
+absl::StatusOr<UploadedMesh> UploadRenderMesh(Client& client, const RenderMesh& mesh,
+                                              const TransferProgress& progress) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, SerializeRenderMesh(mesh));
+  return Upload(client, v1::ASSET_KIND_RENDER_MESH, bytes, progress);
+}
+
+absl::StatusOr<TetMesh> DownloadMesh(Client& client, const std::string& asset,
+                                     const TransferProgress& progress) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, Download(client, asset, progress));
   return ParseMesh(bytes);
+}
+
+absl::StatusOr<RenderMesh> DownloadRenderMesh(Client& client, const std::string& asset,
+                                              const TransferProgress& progress) {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, Download(client, asset, progress));
+  return ParseRenderMesh(bytes);
 }
 
 }  // namespace cleave

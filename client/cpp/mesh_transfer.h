@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/cpp/client.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 
 namespace cleave {
@@ -33,6 +34,12 @@ absl::StatusOr<UploadedMesh> UploadMesh(Client& client, const TetMesh& mesh,
 // are as uploaded: unit_scale is not applied. Errors: NotFound, DataLoss, Unavailable, Cancelled.
 absl::StatusOr<TetMesh> DownloadMesh(Client& client, const std::string& asset,
                                      const TransferProgress& progress);
+
+// The same for a render mesh, whose asset goes into RenderMeshSource.asset.
+absl::StatusOr<UploadedMesh> UploadRenderMesh(Client& client, const RenderMesh& mesh,
+                                              const TransferProgress& progress);
+absl::StatusOr<RenderMesh> DownloadRenderMesh(Client& client, const std::string& asset,
+                                              const TransferProgress& progress);
 
 // Lower-case hexadecimal digits of bytes.
 std::string ToHex(absl::string_view bytes);

@@ -66,6 +66,12 @@ class Checker {
                                         limits::kMaxNameBytes, " are allowed"));
     }
   }
+  void Sha256(absl::string_view field, const std::string& digits) {
+    if (digits.size() == 64 && digits.find_first_not_of("0123456789abcdef") == std::string::npos)
+      return;
+    faults_.Error(field, absl::StrCat("\"", digits.substr(0, limits::kMaxNameBytes),
+                                      "\" is not 64 lower-case hex digits"));
+  }
   // False when the list is too long to be looked through.
   bool List(absl::string_view field, size_t size, int64_t most = limits::kMaxListItems) {
     if (static_cast<int64_t>(size) <= most) return true;

@@ -56,6 +56,9 @@ inline constexpr double kMinContactStiffness = 0.01;       // softer, bodies pas
 inline constexpr double kMaxContactStiffness = 1000;       // harder, solves crawl
 inline constexpr double kMaxColliderMass = 1e12;           // kg
 
+// Of a render mesh: those who show it take about half a kilobyte a triangle, 4 GB of these.
+inline constexpr int64_t kMaxRenderTriangles = 8'000'000;
+
 inline constexpr double kMaxSleepSpeed = 1;  // m/s; what is faster is not at rest by any measure
 inline constexpr double kMaxSleepSeconds = 3600;  // longer, leave sleep out
 

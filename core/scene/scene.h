@@ -355,9 +355,16 @@ struct Quality {
   Precision precision = Precision::kDouble;
 };
 
+// A fine triangle mesh round the body, which those who show it draw in place of its surface. The
+// simulation knows nothing of it: the same scene without one has the same bits.
+struct RenderMeshSource {
+  std::variant<std::monostate, MeshFile, MeshAsset> source;
+  double unit_scale = 1;  // metres for one unit of its coordinates
+};
+
 struct Output {
-  std::optional<double>
-      tolerance;  // m, largest error of a streamed coordinate; absent: 1e-4 of the diagonal
+  // m, largest error of a streamed coordinate; 0: every bit is kept; absent: 1e-4 of the diagonal.
+  std::optional<double> tolerance;
   int32_t keyframe_interval = 24;    // frames
   int32_t checkpoint_interval = 10;  // frames
 };
@@ -375,8 +382,9 @@ struct Scene {
   std::vector<Weakening> weakenings;  // later ones win
   std::optional<Impurities> impurities;
   std::vector<Collider> colliders;
-  std::optional<Contact> contact;  // absent: pieces pass through each other
-  std::optional<Sleep> sleep;      // absent: nothing sleeps
+  std::optional<Contact> contact;               // absent: pieces pass through each other
+  std::optional<Sleep> sleep;                   // absent: nothing sleeps
+  std::optional<RenderMeshSource> render_mesh;  // absent: the body's own surface is shown
   Timing timing;
   Quality quality;
   Output output;
@@ -399,7 +407,8 @@ inline bool PullsStrands(const Scene& scene) {
   return false;
 }
 
-// Whether anything in the scene changes what thresholds of edges count, but for impurities' potency.
+// Whether anything in the scene changes what thresholds of edges count, but for impurities'
+// potency.
 inline bool WeakensEdges(const Scene& scene) {
   return !scene.weakenings.empty() ||
          (scene.impurities.has_value() && WeakensEdges(*scene.impurities));

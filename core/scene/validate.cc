@@ -15,6 +15,7 @@
 #include "core/scene/limits.h"
 #include "core/scene/load_rules.h"
 #include "core/scene/material_rules.h"
+#include "core/scene/render_mesh_rules.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
@@ -33,12 +34,7 @@ struct MeshSourceRules {
                                            "mesh.asset"));
   }
   void operator()(const MeshAsset& asset) const {
-    if (asset.sha256.size() == 64 &&
-        asset.sha256.find_first_not_of("0123456789abcdef") == std::string::npos) {
-      return;
-    }
-    faults.Error("mesh.asset", absl::StrCat("\"", asset.sha256.substr(0, limits::kMaxNameBytes),
-                                            "\" is not 64 lower-case hex digits"));
+    Checker(faults).Sha256("mesh.asset", asset.sha256);
   }
   void operator()(const BoxMesh& box) const { faults.Append("mesh.box.", CheckShape(box)); }
   void operator()(const CylinderMesh& cylinder) const {
@@ -303,6 +299,7 @@ Faults ValidateScene(const Scene& scene) {
   CheckColliders(scene, faults);
   CheckContact(scene, faults);
   CheckSleep(scene, faults);
+  if (scene.render_mesh.has_value()) CheckRenderMeshSource(*scene.render_mesh, faults);
   CheckSettings(scene, faults, check);
   return faults;
 }

@@ -9,7 +9,8 @@
 namespace cleave {
 
 // A digest of everything that decides the motion: the mesh and the scene without names of its own,
-// frame count and output settings, so that a run may be prolonged or encoded otherwise.
+// frame count, output settings and render mesh, so that a run may be prolonged, encoded or shown
+// otherwise.
 uint64_t DigestScene(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace cleave

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/mesh/incidence.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/surface/faces.h"
-#include "core/surface/render_mesh.h"
 #include "core/surface/tet_locator.h"
 
 namespace cleave {

@@ -9,12 +9,12 @@
 
 #include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/surface/divided_mesh.h"
 #include "core/surface/faces.h"
 #include "core/surface/point_copies.h"
 #include "core/surface/render_hubs.h"
-#include "core/surface/render_mesh.h"
 #include "core/surface/surface_topology.h"
 
 namespace cleave {

@@ -82,4 +82,20 @@ MeshSource MeshSourceFromMessage(const v1::MeshSource& message, const FieldReade
   return mesh;
 }
 
+RenderMeshSource RenderMeshSourceFromMessage(const v1::RenderMeshSource& message) {
+  RenderMeshSource mesh;
+  if (message.has_unit_scale()) mesh.unit_scale = message.unit_scale();
+  switch (message.source_case()) {
+    case v1::RenderMeshSource::kFile:
+      mesh.source = MeshFile{message.file()};
+      break;
+    case v1::RenderMeshSource::kAsset:
+      mesh.source = MeshAsset{message.asset()};
+      break;
+    case v1::RenderMeshSource::SOURCE_NOT_SET:
+      break;
+  }
+  return mesh;
+}
+
 }  // namespace cleave

@@ -11,6 +11,7 @@ namespace cleave {
 
 // Parts of a scene from their messages, for SceneFromMessage; `field` is a part's path in faults.
 MeshSource MeshSourceFromMessage(const v1::MeshSource& message, const FieldReader& read);
+RenderMeshSource RenderMeshSourceFromMessage(const v1::RenderMeshSource& message);
 Selector SelectorFromMessage(const v1::Selector& message, const std::string& field,
                              const FieldReader& read);
 Weakening WeakeningFromMessage(const v1::Weakening& message, const std::string& field,

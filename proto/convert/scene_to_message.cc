@@ -368,6 +368,14 @@ v1::Scene MessageFromScene(const Scene& scene) {
     message.mutable_sleep()->set_speed(scene.sleep->speed);
     message.mutable_sleep()->set_time(scene.sleep->time);
   }
+  if (scene.render_mesh.has_value()) {
+    v1::RenderMeshSource* to = message.mutable_render_mesh();
+    to->set_unit_scale(scene.render_mesh->unit_scale);
+    if (const auto* file = std::get_if<MeshFile>(&scene.render_mesh->source))
+      to->set_file(file->path);
+    if (const auto* asset = std::get_if<MeshAsset>(&scene.render_mesh->source))
+      to->set_asset(asset->sha256);
+  }
   for (const Collider& collider : scene.colliders) WriteCollider(collider, message.add_colliders());
   message.mutable_fracture()->set_aggregation(scene.fracture.aggregation == StressAggregation::kMax
                                                   ? v1::STRESS_AGGREGATION_MAX

@@ -56,11 +56,19 @@ absl::StatusOr<std::string> AssetStore::Add(absl::string_view bytes) {
   return sha256;
 }
 
-absl::StatusOr<TetMesh> AssetStore::LoadMesh(const std::string& sha256) const {
+absl::StatusOr<std::string> AssetStore::Load(const std::string& sha256) const {
   CLEAVE_RETURN_IF_ERROR(OpenAsset(sha256).status());
-  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes,
-                          ReadFile(PathOf(sha256), limits_.max_asset_bytes));
+  return ReadFile(PathOf(sha256), limits_.max_asset_bytes);
+}
+
+absl::StatusOr<TetMesh> AssetStore::LoadMesh(const std::string& sha256) const {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, Load(sha256));
   return ParseMesh(bytes);
+}
+
+absl::StatusOr<RenderMesh> AssetStore::LoadRenderMesh(const std::string& sha256) const {
+  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, Load(sha256));
+  return ParseRenderMesh(bytes);
 }
 
 }  // namespace cleave

@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "cleave/v1/asset.pb.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "server/files/durable_file.h"
 
@@ -43,8 +44,10 @@ class AssetStore {
   // Stores bytes that the gateway made itself; the caller vouches for what they hold. Returns the
   // name.
   absl::StatusOr<std::string> Add(absl::string_view bytes);
-  // The mesh of an asset, as it was uploaded. Errors: as OpenAsset; InvalidArgument.
+  // The mesh of an asset, as it was uploaded. An asset of another kind than asked for is empty or
+  // refused. Errors: as OpenAsset; InvalidArgument.
   absl::StatusOr<TetMesh> LoadMesh(const std::string& sha256) const;
+  absl::StatusOr<RenderMesh> LoadRenderMesh(const std::string& sha256) const;
 
   // An upload in progress, from its first message to its end. While it lives nobody else can write
   // to the same upload.
@@ -73,6 +76,7 @@ class AssetStore {
     friend class AssetStore;
     Upload(AssetStore& store, std::string id, v1::AssetSpec spec);
     absl::StatusOr<std::vector<std::string>> Check() const;
+    absl::StatusOr<std::vector<std::string>> CheckMesh(const std::string& bytes) const;
     std::string part_path() const { return store_.uploads_ + "/" + id_ + ".part"; }
     std::string spec_path() const { return store_.uploads_ + "/" + id_ + ".spec"; }
     void Discard();
@@ -96,6 +100,8 @@ class AssetStore {
   absl::StatusOr<v1::UploadStatus> Query(const std::string& upload_id) const;
 
  private:
+  absl::StatusOr<std::string> Load(const std::string& sha256) const;
+
   AssetStore(const std::string& data, const AssetLimits& limits)
       : assets_(data + "/assets"), uploads_(data + "/uploads"), limits_(limits) {}
 

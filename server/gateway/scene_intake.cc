@@ -12,6 +12,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/procedural.h"
 #include "core/model/footprint.h"
+#include "core/scene/render_mesh_rules.h"
 #include "core/scene/scene.h"
 #include "core/scene/validate.h"
 #include "google/rpc/error_details.pb.h"
@@ -22,9 +23,9 @@
 namespace cleave {
 namespace {
 
-bool MeshIsSound(const Faults& faults) {
+bool IsSound(absl::string_view part, const Faults& faults) {
   for (const Fault& fault : faults.errors()) {
-    if (absl::StartsWith(fault.field, "mesh")) return false;
+    if (absl::StartsWith(fault.field, part)) return false;
   }
   return true;
 }
@@ -57,6 +58,11 @@ absl::StatusOr<std::optional<TetMesh>> ObtainMesh(const MeshSource& mesh, const 
       return std::nullopt;
     }
     CLEAVE_ASSIGN_OR_RETURN(TetMesh loaded, assets.LoadMesh(asset->sha256));
+    if (loaded.tet_count() > assets.limits().max_tets) {  // it came as an asset of another kind
+      return MakeError(absl::StatusCode::kResourceExhausted, "TET_QUOTA",
+                       absl::StrCat("the mesh has ", loaded.tet_count(),
+                                    " tets; this server takes ", assets.limits().max_tets));
+    }
     return loaded;
   }
   return std::visit(
@@ -76,6 +82,26 @@ absl::StatusOr<std::optional<TetMesh>> ObtainMesh(const MeshSource& mesh, const 
         }
       },
       mesh.source);
+}
+
+// Holds a render mesh to its rules, and to the body's where that is sound (else null).
+absl::Status CheckRenderMeshOf(const RenderMeshSource& source, const TetMesh* body,
+                               const AssetStore& assets, bool other_faults, Faults& faults) {
+  const auto* asset = std::get_if<MeshAsset>(&source.source);
+  if (asset == nullptr) return absl::OkStatus();  // is a fault already
+  if (!assets.Has(asset->sha256)) {
+    if (!other_faults) return MissingAsset(asset->sha256);
+    faults.Error("render_mesh.asset", "the server has no such asset; upload it first");
+    return absl::OkStatus();
+  }
+  CLEAVE_ASSIGN_OR_RETURN(RenderMesh mesh, assets.LoadRenderMesh(asset->sha256));
+  Faults own = CheckRenderMesh(mesh);
+  if (own.ok() && body != nullptr) {
+    ScaleMesh(source.unit_scale, mesh);
+    own = CheckRenderMeshFits(mesh, body->rest_positions);
+  }
+  faults.Append("render_mesh.", own);
+  return absl::OkStatus();
 }
 
 v1::Plan PlanOf(const Scene& scene, const TetMesh& mesh) {
@@ -107,7 +133,7 @@ absl::StatusOr<CheckedScene> Check(v1::Scene& message, const Faults& request_fau
   const Scene& scene = checked.scene;
   faults.Append("", ValidateScene(scene));
   std::optional<TetMesh> mesh;
-  if (MeshIsSound(faults)) {
+  if (IsSound("mesh", faults)) {
     CLEAVE_ASSIGN_OR_RETURN(
         mesh, ObtainMesh(scene.mesh, assets, !(faults.ok() && request_faults.ok()), faults));
   }
@@ -121,6 +147,12 @@ absl::StatusOr<CheckedScene> Check(v1::Scene& message, const Faults& request_fau
     const Faults mesh_faults = CheckAndOrientMesh(*mesh);
     faults.Append("mesh.", mesh_faults);
     if (mesh_faults.ok()) faults.Append("", ValidateSceneWithMesh(scene, *mesh));
+  }
+  if (scene.render_mesh.has_value() && IsSound("render_mesh", faults)) {
+    const bool has_body = mesh.has_value() && IsSound("mesh", faults);
+    CLEAVE_RETURN_IF_ERROR(CheckRenderMeshOf(*scene.render_mesh, has_body ? &*mesh : nullptr,
+                                             assets, !(faults.ok() && request_faults.ok()),
+                                             faults));
   }
   Faults all = request_faults;
   all.Append("scene.", faults);

@@ -11,6 +11,7 @@
 #include "core/base/sha256.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh_check.h"
+#include "core/scene/render_mesh_rules.h"
 #include "proto/convert/mesh.h"
 #include "server/gateway/asset_store.h"
 #include "server/gateway/errors.h"
@@ -53,9 +54,10 @@ absl::StatusOr<std::string> Unpack(const v1::UploadAssetRequest& chunk,
 
 absl::Status CheckSpec(const v1::AssetSpec& spec, const AssetLimits& limits) {
   Faults faults;
-  if (spec.kind() != v1::ASSET_KIND_TET_MESH) {
-    faults.Error("spec.kind", absl::StrCat(static_cast<int>(spec.kind()),
-                                           " is not a kind that can be uploaded (TET_MESH)"));
+  if (spec.kind() != v1::ASSET_KIND_TET_MESH && spec.kind() != v1::ASSET_KIND_RENDER_MESH) {
+    faults.Error("spec.kind",
+                 absl::StrCat(static_cast<int>(spec.kind()),
+                              " is not a kind that can be uploaded (TET_MESH, RENDER_MESH)"));
   }
   if (spec.digest().sha256().size() != 32) {
     faults.Error("spec.digest.sha256",
@@ -210,6 +212,18 @@ absl::StatusOr<std::vector<std::string>> AssetStore::Upload::Check() const {
     return MakeError(absl::StatusCode::kDataLoss, "ASSET_DIGEST_MISMATCH",
                      "the bytes received do not have the declared SHA-256");
   }
+  if (spec_.kind() != v1::ASSET_KIND_RENDER_MESH) return CheckMesh(bytes);
+  const absl::StatusOr<RenderMesh> mesh = ParseRenderMesh(bytes);
+  if (!mesh.ok()) {
+    return MakeError(absl::StatusCode::kInvalidArgument, "MESH_INVALID", mesh.status().message());
+  }
+  const Faults faults = CheckRenderMesh(*mesh);
+  if (!faults.ok()) return MakeBadRequest("MESH_INVALID", "render_mesh.", faults);
+  return std::vector<std::string>();
+}
+
+absl::StatusOr<std::vector<std::string>> AssetStore::Upload::CheckMesh(
+    const std::string& bytes) const {
   absl::StatusOr<TetMesh> mesh = ParseMesh(bytes);
   if (!mesh.ok()) {
     return MakeError(absl::StatusCode::kInvalidArgument, "MESH_INVALID", mesh.status().message());

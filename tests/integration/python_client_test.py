@@ -25,6 +25,7 @@ import numpy as np  # noqa: E402
 from google.protobuf import json_format  # noqa: E402
 
 from cleave.client import CleaveError, Client, Region  # noqa: E402
+from cleave.embedded import EmbeddedVertices  # noqa: E402
 from cleave.events import read_events  # noqa: E402
 from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
 
@@ -78,6 +79,47 @@ class PythonClientTest(unittest.TestCase):
         again = self.client.session("two-tets")
         self.assertEqual([frame.number for frame in again.frames(3, 4)], [3, 4])
         np.testing.assert_array_equal(list(again.frames(5))[0].positions, frames[-1].positions)
+
+    def test_render_mesh_is_there_for_all_who_join_and_breaks_with_the_body(self):
+        # Half of the bar's four long sides, as triangles between 41 squares.
+        ring = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * first_steps.SIDE
+        points = np.array([[x, *corner] for x in np.linspace(0, first_steps.LENGTH, 41)
+                           for corner in ring])
+        triangles = np.array([[4 * i + j, 4 * i + j + 4, 4 * i + (j + 1) % 4]
+                              for i in range(40) for j in range(4)])
+        uvs = np.arange(6 * len(triangles), dtype="f4").reshape(-1, 3, 2)
+        scene = first_steps.bar()
+        scene.render_mesh.asset = self.client.upload_render_mesh(1000 * points, triangles, uvs)
+        scene.render_mesh.unit_scale = 0.001
+        session = self.client.create_session("clad", scene)
+        self.addCleanup(session.delete)
+        self.assertIsNone(self.client.create_session("bare", first_steps.bar()).render_mesh())
+        self.client.session("bare").delete()
+        session.run()
+        joined = self.client.session("clad")
+        shown = joined.render_mesh()
+        np.testing.assert_allclose(shown.points, points, atol=1e-15)
+        np.testing.assert_array_equal(shown.triangles, triangles)
+        np.testing.assert_array_equal(shown.uvs, uvs)
+        mesh = joined.mesh()
+        fine = EmbeddedVertices(mesh.positions, mesh.tets, shown.points)
+        for frame in joined.frames(mesh=mesh):
+            moved = fine.move(frame.positions, frame.broken_edges)
+            torn = fine.torn(shown.triangles)
+            if frame.number == 0:
+                np.testing.assert_allclose(moved, points, atol=1e-6)
+                self.assertFalse(torn.any())
+        self.assertTrue(torn.any())
+        self.assertFalse(torn.all())
+        triangles[3, 1] = len(points)
+        with self.assertRaisesRegex(CleaveError, r"render_mesh.triangles\[3\]: point 164 is outside"):
+            self.client.upload_render_mesh(points, triangles)
+        scene.render_mesh.unit_scale = 1
+        with self.assertRaisesRegex(CleaveError, "render_mesh.points: spans .* in the same units"):
+            self.client.create_session("wrong", scene)
+        scene.render_mesh.asset = "f" * 64
+        with self.assertRaisesRegex(CleaveError, "the server has no asset f"):
+            self.client.create_session("wrong", scene)
 
     def test_frames_tell_what_broke(self):
         session = self.client.create_session("told", first_steps.bar())

@@ -10,6 +10,7 @@
 #include <map>
 
 #include "absl/strings/escaping.h"
+#include "client/cpp/mesh_transfer.h"
 #include "core/base/crc32c.h"
 #include "core/base/sha256.h"
 #include "core/scene/validate.h"
@@ -41,6 +42,15 @@ std::string SmallMesh() {
   return *SerializeMesh(mesh);
 }
 
+// Closed, of the size of the small scene's bar.
+RenderMesh SmallRenderMesh() {
+  RenderMesh mesh;
+  mesh.points = {{0, 0, 0}, {0.4, 0, 0}, {0, 0.1, 0}, {0, 0, 0.1}};
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  mesh.uvs.resize(4);
+  return mesh;
+}
+
 int OpenFiles(pid_t pid) {
   DIR* directory = opendir(("/proc/" + std::to_string(pid) + "/fd").c_str());
   if (directory == nullptr) return -1;
@@ -60,6 +70,9 @@ class MutatedRequests : public testing::Test {
         assets_(v1::AssetService::NewStub(channel_)),
         frames_(v1::FrameService::NewStub(channel_)),
         client_(server_.Connect()) {
+    const auto uploaded = UploadRenderMesh(*client_, SmallRenderMesh(), nullptr);
+    EXPECT_TRUE(uploaded.ok()) << uploaded.status();
+    render_mesh_ = uploaded->asset;
     Create(*client_, "bar", SmallScene());
     RunToEnd(*client_, "bar");
     open_files_ = OpenFiles(server_.pid());
@@ -105,6 +118,7 @@ class MutatedRequests : public testing::Test {
     v1::CreateSessionRequest request;
     request.set_session_id("mutant-" + std::to_string(created_++));
     *request.mutable_scene() = SmallScene();
+    request.mutable_scene()->mutable_render_mesh()->set_asset(render_mesh_);
     request.set_validate_only(true);
     return request;
   }
@@ -116,6 +130,7 @@ class MutatedRequests : public testing::Test {
   std::unique_ptr<v1::AssetService::Stub> assets_;
   std::unique_ptr<v1::FrameService::Stub> frames_;
   std::unique_ptr<Client> client_;
+  std::string render_mesh_;  // an asset of the server
   std::map<int, int> counts_;
   int created_ = 0;
   int open_files_ = 0;
@@ -194,13 +209,14 @@ TEST_F(MutatedRequests, ToCreateAreRefusedWithFieldsOrSound) {
 }
 
 TEST_F(MutatedRequests, ToUploadAreNeverCompleteWithOtherBytes) {
-  const std::string mesh = SmallMesh();
   for (uint64_t seed = 0; seed < 1500; ++seed) {
     SCOPED_TRACE(seed);
     Dice dice(seed);
+    const bool renders = dice.OneIn(2);
+    const std::string mesh = renders ? *SerializeRenderMesh(SmallRenderMesh()) : SmallMesh();
     v1::UploadAssetRequest first, last;
     first.set_upload_id("upload-" + std::to_string(seed));
-    first.mutable_spec()->set_kind(v1::ASSET_KIND_TET_MESH);
+    first.mutable_spec()->set_kind(renders ? v1::ASSET_KIND_RENDER_MESH : v1::ASSET_KIND_TET_MESH);
     first.mutable_spec()->mutable_digest()->set_sha256(Sha256::Of(mesh));
     first.mutable_spec()->mutable_digest()->set_size_bytes(static_cast<int64_t>(mesh.size()));
     first.set_payload(mesh.substr(0, 50));

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/scene/limits.h"
+#include "core/scene/render_mesh_rules.h"
 #include "core/scene/validate.h"
 #include "proto/convert/mesh.h"
 #include "proto/convert/scene.h"
@@ -22,6 +23,7 @@ v1::Scene BundledScene() {
   v1::Scene scene;
   EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(text.str(), &scene).ok());
   scene.mutable_mesh()->set_asset(std::string(64, 'a'));
+  scene.mutable_render_mesh()->set_asset(std::string(64, 'b'));
   return scene;
 }
 
@@ -88,6 +90,33 @@ TEST(MutatedScenes, AreRefusedByFieldOrSound) {
   // Both kinds must have been met, or the test shows nothing.
   EXPECT_GT(accepted, 100);
   EXPECT_GT(refused, 1000);
+}
+
+TEST(MutatedRenderMeshes, AreRefusedOrAsSoundAsTheirRulesSay) {
+  RenderMesh mesh;
+  mesh.points = OneTet().rest_positions;
+  mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  mesh.uvs.resize(4);
+  const std::string original = *SerializeRenderMesh(mesh);
+  int sound = 0;
+  for (uint64_t seed = 0; seed < 10000; ++seed) {
+    SCOPED_TRACE(seed);
+    Dice dice(seed);
+    const auto mutant = ParseRenderMesh(MutateBytes(original, dice));
+    if (!mutant.ok() || !CheckRenderMesh(*mutant).ok() ||
+        !CheckRenderMeshFits(*mutant, mesh.points).ok())
+      continue;
+    ++sound;
+    EXPECT_TRUE(mutant->uvs.empty() || mutant->uvs.size() == mutant->triangles.size());
+    for (const auto& triangle : mutant->triangles) {
+      for (const int32_t point : triangle)
+        EXPECT_TRUE(point >= 0 && static_cast<size_t>(point) < mutant->points.size());
+    }
+    for (const Vec3& point : mutant->points) {
+      for (const double coordinate : point) EXPECT_LE(std::abs(coordinate), 2);
+    }
+  }
+  EXPECT_GT(sound, 100);
 }
 
 TEST(MutatedMeshes, AreRefusedOrKeepTheirListsInStep) {

@@ -9,8 +9,8 @@
 #include "absl/status/statusor.h"
 #include "client/io/series/frame_source.h"
 #include "core/base/vec3.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
-#include "core/surface/render_mesh.h"
 
 namespace cleave {
 

@@ -13,9 +13,9 @@
 #include "core/base/vec3.h"
 #include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
-#include "core/surface/render_mesh.h"
 #include "core/surface/surface_topology.h"
 
 namespace cleave {

@@ -14,8 +14,8 @@
 #include "client/io/preview/props.h"
 #include "client/io/preview/render.h"
 #include "client/io/series/frame_source.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
-#include "core/surface/render_mesh.h"
 
 namespace cleave {
 

@@ -5,9 +5,9 @@
 
 #include "absl/strings/string_view.h"
 #include "core/base/state_hash.h"
+#include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/stream/frame.h"
-#include "core/surface/render_mesh.h"
 
 namespace cleave {
 

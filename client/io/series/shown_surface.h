@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 #include "core/base/vec3.h"
-#include "core/surface/render_mesh.h"
+#include "core/mesh/render_mesh.h"
 
 namespace cleave {
 

@@ -22,7 +22,7 @@ constexpr size_t kMaxSurfaceFileBytes = size_t{256} << 20;
 
 absl::string_view EndingOf(absl::string_view name) {
   if (absl::EndsWithIgnoreCase(name, ".zst")) name.remove_suffix(4);
-  for (const absl::string_view ending : {"obj", "ply", "stl"}) {
+  for (const absl::string_view ending : {"obj", "ply", "stl", "glb"}) {
     if (absl::EndsWithIgnoreCase(name, absl::StrCat(".", ending))) return ending;
   }
   return "";
@@ -56,7 +56,8 @@ bool IsFinite(const aiVector3D& place) {
 absl::StatusOr<SurfaceMesh> ParseSurfaceFile(absl::string_view bytes, absl::string_view name) {
   const absl::string_view ending = EndingOf(name);
   if (ending.empty()) {
-    return absl::InvalidArgumentError("is not a surface that can be read; .obj, .ply and .stl are");
+    return absl::InvalidArgumentError(
+        "is not a surface that can be read; .obj, .ply, .stl and .glb are");
   }
   if (bytes.empty()) return absl::InvalidArgumentError("is empty");
   if (bytes.size() > kMaxSurfaceFileBytes) {

@@ -20,10 +20,11 @@ struct SurfaceMesh {
   std::vector<std::array<std::array<float, 2>, 3>> uvs;
 };
 
-// Reads a surface from a .obj, .ply or .stl file, text or binary; all objects and groups of the
-// file are one surface. Polygons become triangles, lines and points are passed over, and vertices
-// at the same place become one, as formats repeat them where normals or materials change.
-// Coordinates have seven digits: the readers are of single precision.
+// Reads a surface from a .obj, .ply, .stl or .glb file, text or binary; all objects, groups and
+// nodes of the file are one surface, as it stands in the file's scene. Polygons become triangles,
+// lines and points are passed over, and vertices at the same place become one, as formats repeat
+// them where normals or materials change. Coordinates have seven digits: the readers are of single
+// precision.
 //
 // Errors name the path: NotFound, PermissionDenied, or InvalidArgument for another ending, a file
 // that cannot be read as what its name says, one without triangles and one with a coordinate that

@@ -75,3 +75,12 @@ class Mesh:
     def edges(self):
         """Node pairs, sorted: row numbers are the edge ids of broken_edges."""
         return edges_of(self.tets)
+
+
+@dataclasses.dataclass(frozen=True)
+class RenderMesh:
+    """A fine triangle mesh round a body at rest; EmbeddedVertices moves its points."""
+
+    points: np.ndarray  # n x 3 float64
+    triangles: np.ndarray  # m x 3 int32, counterclockwise from outside
+    uvs: object  # m x 3 x 2 float32, texture coordinates of the corners, or None

@@ -10,18 +10,16 @@ Needs grpcio, protobuf, numpy and zstandard, and the stubs that make_stubs.py ge
 """
 
 import dataclasses
-import hashlib
 import pathlib
 import time
 import uuid
 
 import grpc
 import numpy as np
-import zstandard
 from google.protobuf import json_format, text_format
 
-from cleave.answers import Curve, ImpurityPreview, Mesh, Probe
-from cleave.checksums import crc32c
+from cleave.answers import Curve, ImpurityPreview, Mesh, Probe, RenderMesh
+from cleave.assets import download, upload
 from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay  # noqa: F401
 from cleave.region import Region  # noqa: F401
 from cleave.rungs import rung_number
@@ -41,7 +39,6 @@ from cleave.stubs import (
     session_pb2_grpc,
 )
 
-_CHUNK_BYTES = 256 * 1024
 _CALL_SECONDS = 30
 
 
@@ -114,22 +111,21 @@ class Client:
             message.tet_regions.extend(int(region) for region in regions)
         for region, name in sorted((region_names or {}).items()):
             message.regions.add(id=region, name=name)
-        data = message.SerializeToString(deterministic=True)
-        digest = asset_pb2.Digest(sha256=hashlib.sha256(data).digest(), size_bytes=len(data))
-        for attempt in range(1, ATTEMPTS + 1):
-            missing = self._call(
-                self._assets.FindMissingAssets,
-                asset_pb2.FindMissingAssetsRequest(digests=[digest]),
-            ).missing
-            if not missing:
-                break
-            try:
-                self._upload(data, digest)
-            except CleaveError as error:
-                if error.code != grpc.StatusCode.UNAVAILABLE or attempt == ATTEMPTS:
-                    raise
-                time.sleep(delay(attempt))
-        return digest.sha256.hex()
+        return upload(self, asset_pb2.ASSET_KIND_TET_MESH, message)
+
+    def upload_render_mesh(self, points, triangles, uvs=None):
+        """Sends a triangle mesh that viewers show in place of a body's surface; returns its asset name.
+
+        points: n x 3, where the body rests; triangles: m x 3 point ids, counterclockwise from outside;
+        uvs: m x 3 x 2 texture coordinates of the corners, or None. The name goes into a scene's
+        render_mesh.asset. What the server has is not sent again.
+        """
+        message = scene_pb2.RenderMesh(
+            points=np.asarray(points, np.float64).ravel(),
+            triangles=np.asarray(triangles, np.uint32).ravel(),
+            uvs=[] if uvs is None else np.asarray(uvs, np.float32).ravel(),
+        )
+        return upload(self, asset_pb2.ASSET_KIND_RENDER_MESH, message)
 
     def create_session(self, session_id, scene, threads=0, validate_only=False, rung=None):
         """Creates a session of a Scene message; with validate_only returns its Plan instead.
@@ -255,58 +251,21 @@ class Client:
 
     def download_mesh(self, asset, unit_scale=1.0):
         """The Mesh of an asset name; positions times unit_scale."""
-        data = bytearray()
-        try:
-            for chunk in self._assets.DownloadAsset(
-                asset_pb2.DownloadAssetRequest(asset=asset), timeout=3600
-            ):
-                if chunk.offset != len(data) or chunk.crc32c != crc32c(chunk.payload):
-                    raise CleaveError(grpc.StatusCode.DATA_LOSS, "a chunk of the mesh is damaged")
-                data += chunk.payload
-        except grpc.RpcError as error:
-            raise CleaveError.of(error) from None
-        if hashlib.sha256(data).hexdigest() != asset:
-            raise CleaveError(grpc.StatusCode.DATA_LOSS, "the mesh received is not the one asked for")
-        message = scene_pb2.TetMesh.FromString(bytes(data))
+        message = scene_pb2.TetMesh.FromString(download(self, asset))
         return Mesh(
             np.array(message.positions, np.float64).reshape(-1, 3) * unit_scale,
             np.array(message.tets, np.int32).reshape(-1, 4),
         )
 
-    def _upload(self, data, digest):
-        # Named after the content: a later process goes on where this one stopped.
-        upload_id = "mesh-" + digest.sha256.hex()[:40]
-        try:
-            begin = self._assets.QueryUploadStatus(
-                asset_pb2.QueryUploadStatusRequest(upload_id=upload_id), timeout=_CALL_SECONDS
-            ).committed_size
-        except grpc.RpcError as error:
-            if error.code() != grpc.StatusCode.NOT_FOUND:
-                raise CleaveError.of(error) from None
-            begin = 0
-        compressor = zstandard.ZstdCompressor(level=3)
-
-        def chunks():
-            for offset in range(begin, len(data), _CHUNK_BYTES):
-                raw = data[offset : offset + _CHUNK_BYTES]
-                request = asset_pb2.UploadAssetRequest(
-                    upload_id=upload_id,
-                    offset=offset,
-                    raw_size=len(raw),
-                    payload=compressor.compress(raw),
-                    crc32c=crc32c(raw),
-                    finish=offset + len(raw) == len(data),
-                )
-                if offset == begin:
-                    request.spec.kind = asset_pb2.ASSET_KIND_TET_MESH
-                    request.spec.digest.CopyFrom(digest)
-                    request.spec.compression = asset_pb2.COMPRESSION_ZSTD
-                yield request
-
-        try:
-            self._assets.UploadAsset(chunks(), timeout=3600)
-        except grpc.RpcError as error:
-            raise CleaveError.of(error) from None
+    def download_render_mesh(self, asset, unit_scale=1.0):
+        """The RenderMesh of an asset name; points times unit_scale."""
+        message = scene_pb2.RenderMesh.FromString(download(self, asset))
+        uvs = np.array(message.uvs, np.float32).reshape(-1, 3, 2) if message.uvs else None
+        return RenderMesh(
+            np.array(message.points, np.float64).reshape(-1, 3) * unit_scale,
+            np.array(message.triangles, np.int32).reshape(-1, 3),
+            uvs,
+        )
 
     def _call(self, method, request, seconds=_CALL_SECONDS, wait=False):
         """A call that is safe to repeat, repeated while the server is away."""

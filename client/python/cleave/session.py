@@ -68,6 +68,19 @@ class Session:
         scale = mesh.unit_scale if mesh.HasField("unit_scale") else 1.0
         return self._client.download_mesh(mesh.asset, scale)
 
+    def render_mesh(self):
+        """The scene's RenderMesh (metres), which viewers show in place of the body's surface, or None.
+
+            shown = session.render_mesh()
+            fine = EmbeddedVertices(mesh.positions, mesh.tets, shown.points)
+        """
+        scene = self.state().scene
+        if not scene.HasField("render_mesh"):
+            return None
+        source = scene.render_mesh
+        scale = source.unit_scale if source.HasField("unit_scale") else 1.0
+        return self._client.download_render_mesh(source.asset, scale)
+
     def frames(
         self,
         first_frame=0,
@@ -84,9 +97,8 @@ class Session:
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
         what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is
         the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
-        have. With `latest` a slow reader skips to the newest key frame. In a `region` (a Region) the
-        accuracy is exactly what was asked for, at least twice what is kept, and coarser elsewhere: frames
-        tell the tolerances of their nodes. Raises CleaveError
+        have. With `latest` a slow reader skips to the newest key frame. In a `region` (a Region) the accuracy is exactly what was asked for, at least twice what
+        is kept, and coarser elsewhere: frames tell the tolerances of their nodes. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()

@@ -9,6 +9,12 @@ import subprocess
 from cleave_cli import BLOCK, CLEAVE, SECONDS, CliTest, cleave, environment, main
 
 
+# A closed mesh in millimetres with texture coordinates.
+FINE = ("v 0 0 0\nv 400 0 0\nv 0 100 0\nv 0 0 100\nvt 0 0\nvt 1 0\nvt 0 0.625\n"
+        "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\nf 1/1 4/2 3/3\n")
+RENDER_MESH = '"render_mesh": {"file": "fine.obj", "unit_scale": 0.001},'
+
+
 class EmbeddedRuns(CliTest):
     def test_run_tells_what_broke(self):
         text = (BLOCK % 3).replace('"density"', '"tensile_strength": 1e-3, "density"')
@@ -81,6 +87,48 @@ class EmbeddedRuns(CliTest):
         code, output, errors = cleave("preview", out, "--still", "2", "--width", "64",
                                       "--render-mesh", mesh)
         self.assertEqual((code, output), (0, f"{out}/still_000002.png\n"), errors)
+
+    def test_render_mesh_of_the_scene_is_shown_and_changes_no_bit_of_the_run(self):
+        bare, out = self.folder / "bare", self.folder / "out"
+        self.assertEqual(cleave("run", self.scene(BLOCK % 2), "--out", bare, "-q")[0], 0)
+        (self.folder / "fine.obj").write_text(FINE)
+        text = (BLOCK % 2).replace('"gravity"', RENDER_MESH + ' "gravity"')
+        code, output, errors = cleave("run", self.scene(text), "--out", out, "--ply")
+        self.assertEqual(code, 0, errors)
+        self.assertIn(f"{out}/render_mesh.pb\n{out}/events.jsonl\n", output)
+        self.assertEqual((out / "frames.clv").read_bytes(), (bare / "frames.clv").read_bytes())
+        first = (out / "ply" / "cleave_000000.ply").read_bytes()
+        self.assertTrue(b"texcoord" in first)
+        self.assertEqual(cleave("export", out, "--format", "obj")[0], 0)
+        self.assertIn("vt 0 0.625", (out / "obj" / "cleave_000002.obj").read_text())
+        self.assertEqual(cleave("export", out, "--format", "obj", "--own-surface", "--to",
+                                self.folder / "own")[0], 0)
+        self.assertNotIn("vt 0 0.625", (self.folder / "own" / "cleave_000002.obj").read_text())
+        self.assertEqual(cleave("export", out / "frames.clv", "--format", "vtu-volume")[0], 0)
+        shown, own = self.folder / "shown", self.folder / "own"
+        for folder, options in ((shown, ()), (own, ("--own-surface",))):
+            code, _, errors = cleave("preview", out, "--still", "2", "--width", "64", "--to", folder,
+                                     *options)
+            self.assertEqual(code, 0, errors)
+        self.assertNotEqual((shown / "still_000002.png").read_bytes(),
+                            (own / "still_000002.png").read_bytes())
+        code, _, errors = cleave("export", out, "--own-surface", "--render-mesh", "fine.obj")
+        self.assertEqual(code, 3)
+        self.assertIn("--own-surface: shows no render mesh", errors)
+        # Bad ones are told with their line.
+        code, _, errors = cleave("validate", self.scene(text.replace("0.001", "1")))
+        self.assertEqual(code, 3)
+        self.assertIn("block.scene.json:8: render_mesh.points: spans 424.264 m, the body 0.424264 m",
+                      errors)
+        (self.folder / "fine.obj").write_text(FINE.replace("400", "nan"))
+        code, _, errors = cleave("run", self.scene(text), "--out", self.folder / "bad")
+        self.assertEqual(code, 3)
+        self.assertIn("block.scene.json:8: render_mesh.file: ", errors)
+        # A damaged one in a run's folder.
+        (out / "render_mesh.pb").write_bytes((out / "render_mesh.pb").read_bytes()[:-7])
+        code, _, errors = cleave("export", out, "--format", "ply")
+        self.assertEqual(code, 3)
+        self.assertIn("render_mesh.pb: ", errors)
 
     def test_damaged_frame_is_named_and_exits_3_and_files_follow_the_umask(self):
         out = self.folder / "out"

@@ -85,6 +85,20 @@ class Server(CliTest):
         self.assertEqual(code, 7, errors)
         self.assertIn("keeps its frames at rung preview", errors)
 
+    def test_render_mesh_comes_with_a_recording_of_a_session(self):
+        (self.folder / "fine.obj").write_text(
+            "v 0 0 0\nv 0.4 0 0\nv 0 0.1 0\nv 0 0 0.1\nvt 0 0\n"
+            "f 1/1 3/1 2/1\nf 1/1 2/1 4/1\nf 2/1 3/1 4/1\nf 1/1 4/1 3/1\n")
+        text = (BLOCK % 2).replace('"gravity"', '"render_mesh": {"file": "fine.obj"}, "gravity"')
+        self.assertEqual(self.ask("submit", self.scene(text), "--session", "clad")[0], 0)
+        out = self.folder / "out"
+        code, output, errors = self.ask("watch", "clad", "--out", out)
+        self.assertEqual(code, 0, errors)
+        self.assertIn(f"{out}/render_mesh.pb", output.split())
+        code, _, errors = cleave("export", out, "--format", "ply")
+        self.assertEqual(code, 0, errors)
+        self.assertTrue(b"texcoord" in (out / "ply" / "cleave_000000.ply").read_bytes())
+
     def test_name_taken_by_another_scene_exits_7_and_bad_name_3(self):
         scene = self.scene(BLOCK % 2)
         self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)

@@ -202,6 +202,35 @@ TEST_F(SceneInputTest, FaultsOfSurfaceFilesNameFieldAndLine) {
               HasSubstr("colliders[0].surface.unit_scale: 0 is outside (0, "));
 }
 
+TEST_F(SceneInputTest, RenderMeshIsReadAndHeldToTheBodyOfAFile) {
+  Write("body.msh",
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+        "$EndNodes\n$Elements\n1\n1 4 0 1 2 3 4\n$EndElements\n");
+  Write("fine.obj",
+        "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nv 0 0 1000\nvt 0 0\nvt 1 0\nvt 0 1\n"
+        "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 2/1 3/2 4/3\n");
+  const auto load = [&](absl::string_view render_mesh) {
+    return LoadScene(Write("a.scene.json",
+                           absl::StrCat("{\"mesh\": {\"file\": \"body.msh\"},\n\"render_mesh\": {",
+                                        render_mesh, "},\n", kMaterial, "}")));
+  };
+  const auto input = load("\"file\": \"fine.obj\", \"unit_scale\": 0.001");
+  ASSERT_TRUE(input.ok()) << input.status();
+  ASSERT_TRUE(input->render_mesh.has_value());
+  EXPECT_EQ(input->render_mesh->uvs.size(), 3u);
+  ASSERT_EQ(input->warnings.size(), 1u);
+  EXPECT_EQ(input->warnings[0].field, "render_mesh.file");
+  EXPECT_THAT(input->warnings[0].description, HasSubstr("is not closed: 3 edges"));
+  const auto message_of = [&](absl::string_view render_mesh) {
+    return std::string(load(render_mesh).status().message());
+  };
+  EXPECT_THAT(message_of("\"file\": \"fine.obj\""),
+              HasSubstr(":2: render_mesh.points: spans 1732.05 m, the body 1.73205 m"));
+  EXPECT_THAT(message_of("\"file\": \"none.obj\""),
+              testing::AllOf(HasSubstr(":2: render_mesh.file: "), HasSubstr("none.obj")));
+  EXPECT_THAT(message_of("\"unit_scale\": 2"), HasSubstr(":2: render_mesh: names no source"));
+}
+
 TEST_F(SceneInputTest, FaultsFromTheServerGetTheirLines) {
   const auto file = ParseScene("{\n\"seed\": 1}", SceneFormat::kJson, "a.scene.json");
   ASSERT_TRUE(file.ok());

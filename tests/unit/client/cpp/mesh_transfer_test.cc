@@ -39,7 +39,10 @@ class FakeAssets : public v1::AssetService::Service {
     v1::UploadAssetRequest chunk;
     std::string digest;
     while (reader->Read(&chunk)) {
-      if (chunk.has_spec()) digest = ToHex(chunk.spec().digest().sha256());
+      if (chunk.has_spec()) {
+        digest = ToHex(chunk.spec().digest().sha256());
+        kind = chunk.spec().kind();
+      }
       std::string& held = uploads[chunk.upload_id()];
       std::string raw(chunk.raw_size(), '\0');
       EXPECT_EQ(
@@ -83,7 +86,8 @@ class FakeAssets : public v1::AssetService::Service {
   }
 
   std::map<std::string, std::string> assets, uploads;
-  int chunks_until_cut = 0;  // 0: never
+  v1::AssetKind kind = v1::ASSET_KIND_UNSPECIFIED;  // of the last upload
+  int chunks_until_cut = 0;                         // 0: never
   bool refuse_first_id = false;
   bool damage = false;
   int streams = 0;
@@ -141,6 +145,22 @@ TEST(UploadMesh, RivalUploadOfTheSameMeshIsSteppedAside) {
   const auto uploaded = UploadMesh(server.client(), LargeMesh(), nullptr);
   ASSERT_TRUE(uploaded.ok()) << uploaded.status();
   EXPECT_EQ(service.assets.count(uploaded->asset), 1u);
+}
+
+TEST(UploadRenderMesh, ArrivesUnderItsKindAndComesBack) {
+  FakeAssets service;
+  FakeServer server(service);
+  RenderMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.uvs = {{{{0, 0}, {1, 0}, {0, 1}}}};
+  const auto uploaded = UploadRenderMesh(server.client(), mesh, nullptr);
+  ASSERT_TRUE(uploaded.ok()) << uploaded.status();
+  EXPECT_EQ(service.kind, v1::ASSET_KIND_RENDER_MESH);
+  const auto back = DownloadRenderMesh(server.client(), uploaded->asset, nullptr);
+  ASSERT_TRUE(back.ok()) << back.status();
+  EXPECT_EQ(back->points, mesh.points);
+  EXPECT_EQ(back->uvs, mesh.uvs);
 }
 
 TEST(DownloadMesh, CutAndDamagedDownloadsAreMadeWhole) {

@@ -45,6 +45,14 @@ TEST(Footprint, AMinimalSceneHasTheseParts) {
   EXPECT_DOUBLE_EQ(footprint.total_seconds, 48 * footprint.seconds_per_frame);
 }
 
+TEST(Footprint, ARenderMeshIsNoPartOfTheModel) {
+  Scene scene = TightScene(1e6, 0.3, 1000, 0.01);
+  const Footprint bare = Plan(scene);
+  scene.render_mesh = RenderMeshSource{MeshAsset{std::string(64, 'a')}, 1};
+  EXPECT_EQ(Names(Plan(scene)), Names(bare));
+  EXPECT_EQ(Plan(scene).total_bytes, bare.total_bytes);
+}
+
 TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   const Scene minimal = TightScene(1e6, 0.3, 1000, 0.01);
   const Footprint base = Plan(minimal);

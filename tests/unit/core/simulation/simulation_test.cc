@@ -90,10 +90,11 @@ TEST(Simulation, RefusesDamagedAndForeignStatesAndStaysAsItWas) {
   EXPECT_EQ(simulation->frame(), 1);
 }
 
-TEST(Simulation, ARunMayBeProlonged) {
+TEST(Simulation, ARunMayBeProlongedAndShownOtherwise) {
   Scene longer = BreakingScene();
   longer.timing.frame_count *= 2;
   longer.output.keyframe_interval = 3;
+  longer.render_mesh = RenderMeshSource{MeshAsset{std::string(64, 'a')}, 1};
   auto simulation = MustCreate(BreakingScene(), BreakingMesh());
   MustAdvance(*simulation);
   EXPECT_TRUE(MustCreate(longer, BreakingMesh())->Restore(simulation->Save()).ok());

@@ -112,7 +112,6 @@ class EmbeddedMeshTest : public ::testing::Test {
 
 TEST_F(EmbeddedMeshTest, WholeIsTheMeshThatWasGiven) {
   const RenderMesh render = FineBox({12, 9, 8}, kSize, [](const Vec3& at) { return at; });
-  ASSERT_TRUE(CheckRenderMesh(render).ok());
   EmbeddedMesh embedded(box_.mesh, box_.incidence, box_.faces, render);
   const NamedPieces pieces(box_.mesh, box_.incidence);
   embedded.Break({}, pieces);
@@ -338,43 +337,6 @@ TEST_F(EmbeddedMeshTest, BreakingBitByBitGivesTheSameAsAtOnceAndCostsWhatBroke) 
   EXPECT_TRUE(by_id(bit_by_bit) == by_id(at_once));
   EXPECT_GT(dearest, 0);
   EXPECT_LT(dearest, static_cast<int64_t>(at_once.divided().triangles.size()) / 8);
-}
-
-TEST(RenderMesh, OneInOtherUnitsOrElsewhereIsRefused) {
-  const std::vector<Vec3> body = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  RenderMesh mesh;
-  mesh.points = {{0.1, 0, 0}, {1.5, 0, 0}, {0, 1.5, 0}};
-  mesh.triangles = {{0, 1, 2}};
-  EXPECT_TRUE(CheckRenderMeshFits(mesh, body).ok());
-  for (const double scale : {1000.0, 0.001}) {
-    RenderMesh scaled = mesh;
-    for (Vec3& p : scaled.points) {
-      for (double& coordinate : p) coordinate *= scale;
-    }
-    EXPECT_EQ(CheckRenderMeshFits(scaled, body).code(), absl::StatusCode::kInvalidArgument);
-  }
-  for (Vec3& p : mesh.points) p[2] += 1.5;
-  EXPECT_EQ(CheckRenderMeshFits(mesh, body).message(),
-            "lies beside the body: along z in [1.5, 1.5] m, the body in [0, 1] m");
-}
-
-TEST(RenderMesh, FaultsAreNamedAndOpenEdgesCounted) {
-  RenderMesh mesh;
-  EXPECT_FALSE(CheckRenderMesh(mesh).ok());
-  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.triangles = {{0, 1, 2}};
-  EXPECT_TRUE(CheckRenderMesh(mesh).ok());
-  EXPECT_EQ(CountOpenEdges(mesh.triangles), 3);
-  mesh.triangles.push_back({2, 1, 0});
-  EXPECT_EQ(CountOpenEdges(mesh.triangles), 0);
-  mesh.triangles.push_back({0, 1, 3});
-  EXPECT_EQ(CheckRenderMesh(mesh).message(), "triangles[2]: point 3 is outside [0, 3)");
-  mesh.triangles.pop_back();
-  mesh.uvs.resize(1);
-  EXPECT_EQ(CheckRenderMesh(mesh).message(), "uvs: has 1 items, not 2");
-  mesh.uvs.clear();
-  mesh.points[1][2] = std::nan("");
-  EXPECT_EQ(CheckRenderMesh(mesh).message(), "points[1]: is not finite");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/surface/render_mesh.h"
+#include "core/mesh/render_mesh.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/surface/surface_checks.h"
 

@@ -105,7 +105,13 @@ constexpr char kEveryField[] = R"pb(
     }
     rotation_center: [ 4, 5, 6 ]
     rotation_axis: [ 1, 1, 0 ]
-    release { time: 0.75 first_fracture: true broken_share: 0.125 pieces: 3 separated_node_sets: [ "grip", "rim" ] }
+    release {
+      time: 0.75
+      first_fracture: true
+      broken_share: 0.125
+      pieces: 3
+      separated_node_sets: [ "grip", "rim" ]
+    }
   }
   loads {
     node_set: "grip"
@@ -149,6 +155,7 @@ constexpr char kEveryField[] = R"pb(
   seed: 77
   contact { stiffness: 3 friction: 0.6 }
   sleep { speed: 0.002 time: 0.5 }
+  render_mesh { asset: "4567" unit_scale: 0.01 }
   colliders {
     name: "floor"
     plane {
@@ -336,6 +343,16 @@ TEST(Scene, KeepsEveryFieldBothWays) {
   MessageDifferencer differencer;
   differencer.ReportDifferencesToString(&difference);
   EXPECT_TRUE(differencer.Compare(message, MessageFromScene(scene))) << difference;
+}
+
+TEST(Scene, KeepsTheFileOfARenderMesh) {
+  v1::Scene message;
+  message.mutable_render_mesh()->set_file("fine.glb");
+  Faults faults;
+  const v1::Scene back = MessageFromScene(SceneFromMessage(message, faults));
+  EXPECT_EQ(back.render_mesh().file(), "fine.glb");
+  EXPECT_EQ(back.render_mesh().unit_scale(), 1);
+  EXPECT_FALSE(MessageFromScene(SceneFromMessage(v1::Scene(), faults)).has_render_mesh());
 }
 
 TEST(Scene, KeepsEveryMeshSource) {

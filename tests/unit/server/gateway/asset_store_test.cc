@@ -213,6 +213,34 @@ TEST_F(AssetStoreTest, BytesThatAreNoMeshAreRefused) {
   EXPECT_EQ(ReasonOf(upload->Finish().status()), "MESH_INVALID");
 }
 
+TEST_F(AssetStoreTest, ARenderMeshIsAnAssetAndABadOneIsRefusedWithItsFaults) {
+  const auto upload = [&](const std::string& bytes) {
+    v1::AssetSpec spec = SpecOf(bytes);
+    spec.set_kind(v1::ASSET_KIND_RENDER_MESH);
+    auto begun = store_->Begin(kUploadId, spec);
+    EXPECT_TRUE(begun.ok()) << begun.status();
+    EXPECT_TRUE((*begun)->Append(ChunkOf(bytes, 0, 4096)).ok());
+    return (*begun)->Finish().status();
+  };
+  RenderMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  const std::string good = *SerializeRenderMesh(mesh);
+  EXPECT_TRUE(upload(good).ok());
+  const auto loaded = store_->LoadRenderMesh(absl::BytesToHexString(Sha256::Of(good)));
+  ASSERT_TRUE(loaded.ok()) << loaded.status();
+  EXPECT_EQ(loaded->points, mesh.points);
+
+  mesh.triangles.push_back({0, 1, 3});
+  const absl::Status bad = upload(*SerializeRenderMesh(mesh));
+  EXPECT_EQ(ReasonOf(bad), "MESH_INVALID");
+  EXPECT_THAT(std::string(bad.message()),
+              testing::HasSubstr("render_mesh.triangles[1]: point 3 is outside [0, 3)"));
+  EXPECT_EQ(ReasonOf(upload("not a message")), "MESH_INVALID");
+  // A mesh of tets has no triangles.
+  EXPECT_EQ(ReasonOf(upload(bytes_)), "MESH_INVALID");
+}
+
 TEST_F(AssetStoreTest, EveryFaultOfASpecIsNamed) {
   v1::AssetSpec spec;
   spec.mutable_digest()->set_sha256("short");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <future>
 
+#include "proto/convert/mesh.h"
 #include "server/session/config.h"
 #include "tests/unit/temporary_directory.h"
 
@@ -71,6 +72,41 @@ TEST_F(SessionStoreTest, ValidatingCreatesNothing) {
   EXPECT_GT(validated->plan().parts_size(), 0);
   EXPECT_TRUE(Ids().empty());
   EXPECT_TRUE(std::filesystem::is_empty(directory_ / "assets"));
+}
+
+TEST_F(SessionStoreTest, ARenderMeshIsHeldToTheBodyAndStaysWithTheSession) {
+  RenderMesh mesh;
+  mesh.points = {{0, 0, 0}, {0, 1000, 0}, {1000, 0, 0}, {0, 0, 1000}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  v1::CreateSessionRequest request = BoxRequest("box");
+  v1::RenderMeshSource& source = *request.mutable_scene()->mutable_render_mesh();
+  source.set_asset(std::string(64, 'a'));
+  const absl::Status missing = store_->Create(request).status();
+  EXPECT_TRUE(absl::IsFailedPrecondition(missing));
+  EXPECT_THAT(std::string(missing.message()), testing::HasSubstr("the server has no asset aaa"));
+
+  source.set_asset(*assets_->Add(*SerializeRenderMesh(mesh)));
+  const absl::Status large = store_->Create(request).status();
+  EXPECT_THAT(std::string(large.message()),
+              testing::HasSubstr("scene.render_mesh.points: spans 1732.05 m, the body 1.73205 m"));
+  source.set_unit_scale(0.001);
+  const auto created = store_->Create(request);
+  ASSERT_TRUE(created.ok()) << created.status();
+  EXPECT_EQ(created->session().scene().render_mesh().asset(), source.asset());
+
+  // Nothing is planned for it.
+  v1::CreateSessionRequest without = BoxRequest("bare");
+  EXPECT_EQ(store_->Create(without)->plan().SerializeAsString(),
+            created->plan().SerializeAsString());
+  // The mesh of a body is none, nor is it a body's.
+  request.set_session_id("other");
+  source.set_asset(created->session().scene().mesh().asset());
+  EXPECT_THAT(std::string(store_->Create(request).status().message()),
+              testing::HasSubstr("scene.render_mesh.triangles: is empty"));
+  without.set_session_id("wrong");
+  without.mutable_scene()->mutable_mesh()->set_asset(
+      created->session().scene().render_mesh().asset());
+  EXPECT_TRUE(absl::IsInvalidArgument(store_->Create(without).status()));
 }
 
 TEST_F(SessionStoreTest, AMeshThatIsTooLargeIsRefusedBeforeItIsMade) {

@@ -55,6 +55,64 @@ constexpr float kTetrahedron[4][3][3] = {{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}},
                                          {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                          {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}}};
 
+// A glTF file in one: a triangle with texture coordinates, moved by its node.
+std::string Glb() {
+  const float numbers[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0, 0, 0.25f};
+  const uint16_t ids[] = {0, 1, 2, 0};
+  std::string data(reinterpret_cast<const char*>(numbers), sizeof(numbers));
+  data.append(reinterpret_cast<const char*>(ids), sizeof(ids));
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],)"
+      R"("nodes":[{"mesh":0,"translation":[0,0,2]}],"meshes":[{"primitives":[{"attributes":)"
+      R"({"POSITION":0,"TEXCOORD_0":1},"indices":2}]}],"buffers":[{"byteLength":68}],)"
+      R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},)"
+      R"({"buffer":0,"byteOffset":60,"byteLength":6}],"accessors":[{"bufferView":0,)"
+      R"("componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},)"
+      R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},{"bufferView":2,)"
+      R"("componentType":5123,"count":3,"type":"SCALAR"}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string file = "glTF";
+  const auto put = [&file](size_t value) {
+    const auto word = static_cast<uint32_t>(value);
+    file.append(reinterpret_cast<const char*>(&word), sizeof(word));
+  };
+  put(2);
+  put(12 + 8 + json.size() + 8 + data.size());
+  put(json.size());
+  file += "JSON" + json;
+  put(data.size());
+  file += std::string("BIN\0", 4) + data;
+  return file;
+}
+
+TEST(SurfaceFile, OfGltfStandsAsItsSceneSaysWithVUpwards) {
+  const auto surface = ParseSurfaceFile(Glb(), "a.glb");
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  ASSERT_EQ(surface->triangles.size(), 1u);
+  EXPECT_EQ(surface->vertices[1], (Vec3{1, 0, 2}));
+  ASSERT_EQ(surface->uvs.size(), 1u);
+  // glTF counts v from the top of the picture.
+  EXPECT_EQ(surface->uvs[0][0], (std::array<float, 2>{0, 1}));
+  EXPECT_EQ(surface->uvs[0][1], (std::array<float, 2>{0.5f, 1}));
+  EXPECT_EQ(surface->uvs[0][2], (std::array<float, 2>{0, 0.75f}));
+}
+
+TEST(SurfaceFile, OfGltfThatIsCutOrDamagedIsRefusedOrWhole) {
+  const std::string file = Glb();
+  for (size_t i = 0; i < file.size(); i += 29) {
+    const auto cut = ParseSurfaceFile(absl::string_view(file).substr(0, i), "a.glb");
+    EXPECT_FALSE(cut.ok()) << i;
+    std::string damaged = file;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x11);
+    const auto read = ParseSurfaceFile(damaged, "a.glb");
+    if (!read.ok()) continue;
+    for (const auto& triangle : read->triangles) {
+      for (const int32_t vertex : triangle)
+        EXPECT_LT(static_cast<size_t>(vertex), read->vertices.size()) << i;
+    }
+  }
+}
+
 TEST(SurfaceFile, HasTextureCoordinatesWhereAllOfItsPartsDo) {
   constexpr char kTextured[] = R"(v 0 0 0
 v 1 0 0
@@ -146,7 +204,7 @@ TEST(SurfaceFile, WhatIsNoSurfaceIsRefusedByName) {
     EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
     return std::string(status.message());
   };
-  EXPECT_THAT(refused(kObj, "a.fbx"), HasSubstr(".obj, .ply and .stl are"));
+  EXPECT_THAT(refused(kObj, "a.fbx"), HasSubstr(".obj, .ply, .stl and .glb are"));
   EXPECT_EQ(refused("", "a.obj"), "is empty");
   EXPECT_THAT(refused("ply\nnot really", "a.ply"), HasSubstr("cannot be read as PLY"));
   EXPECT_THAT(refused(BinaryStl().substr(0, 150), "a.stl"), HasSubstr("cannot be read as STL"));
