@@ -22,6 +22,7 @@ FrameStreamOptions StreamOptions(const FollowOptions& options, ProgressDisplay& 
   stream.stop_frame = options.stop_frame;
   stream.follow = options.stay;
   stream.events = options.events != nullptr;
+  stream.latest = options.latest;
   stream.rung = options.accuracy.rung();
   if (options.accuracy.tolerance > 0) stream.tolerance = options.accuracy.tolerance;
   stream.region = options.region.message();
@@ -71,6 +72,14 @@ std::string FrameEvent(const StreamedFrame& frame) {
       .Add("broken_edges", static_cast<int64_t>(frame.header.broken_edges))
       .Add("pieces", frame.header.fragments)
       .Add("bytes", static_cast<int64_t>(frame.bytes.size()))
+      .Str();
+}
+
+std::string GapEvent(const FrameGap& gap) {
+  return JsonLine()
+      .Add("event", "gap")
+      .Add("first_frame", gap.first_frame)
+      .Add("last_frame", gap.last_frame)
       .Str();
 }
 
@@ -138,6 +147,10 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
     TakeOver(MakeIndexRow(header, 0, 0), result);
     if (header.frame <= options.head_frame || header.frame == 0)
       time_left.StartAt(header.frame, watch.Seconds());
+    if ((*frame)->gap.has_value()) {
+      result.left_out += (*frame)->gap->last_frame - (*frame)->gap->first_frame + 1;
+      if (options.json) PrintResult(GapEvent(*(*frame)->gap));
+    }
     if (options.json) PrintResult(FrameEvent(**frame));
     display.Show({header.frame, options.goal_frame, header.time, result.broken_edges, result.pieces,
                   time_left.Estimate(header.frame, options.goal_frame, watch.Seconds())},

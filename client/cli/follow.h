@@ -30,6 +30,7 @@ struct FollowOptions {
   bool quiet = false;
   AccuracyOptions accuracy;      // asked of the server
   RegionOptions region;          // that is looked at
+  bool latest = false;           // leave out what is before the newest key frame, where behind
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
   EventFile* events = nullptr;   // takes what breaks; may be null
   // Called once before the first frame, when the recorder fits the stream, with the mesh's asset.
@@ -43,6 +44,7 @@ struct FollowResult {
   double last_time = 0;     // s
   int64_t broken_edges = 0;
   int64_t pieces = 0;
+  int64_t left_out = 0;  // frames, with `latest`
 };
 
 // Receives frames until the stream's end: the goal, the failure, the pause that Ctrl-C asked for.

@@ -28,6 +28,7 @@ struct Options {
   int64_t from = 0;
   bool run = false;
   bool stay = false;
+  bool latest = false;
   bool json = false;
   bool quiet = false;
 };
@@ -53,6 +54,8 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
   const auto result = Follow(client, interrupt, follow);
   if (recorder != nullptr) CLEAVE_RETURN_IF_ERROR(recorder->Finish());
   if (!result.ok()) return result.status();
+  if (result->left_out > 0 && !options.quiet && !options.json)
+    PrintNote(absl::StrCat(result->left_out, " frames were left out to keep up"));
   if (recorder != nullptr && !options.json) {
     for (const std::string& path :
          {folder.frames(), folder.mesh(), folder.render_mesh(), folder.events()})
@@ -78,6 +81,7 @@ absl::Status Watch(Program& program, const Options& options) {
   follow.session = SessionName(options.session);
   follow.first_frame = options.from;
   follow.stay = options.stay;
+  follow.latest = options.latest;
   follow.goal_frame = session.goal_frame();
   follow.head_frame = head;
   follow.accuracy = options.accuracy;
@@ -97,11 +101,11 @@ void AddWatch(CLI::App& app, Program& program) {
       ->required()
       ->type_name("SESSION");
   AddServerOptions(*verb, options->server, true);
-  verb->add_option("--out", options->out,
-                   "Folder for the recording: frames.clv, mesh.pb, "
-                   "events.jsonl, scene.textproto and, of a "
-                   "scene that has one, render_mesh.pb")
-      ->type_name("DIR");
+  CLI::Option* out = verb->add_option("--out", options->out,
+                                      "Folder for the recording: frames.clv, mesh.pb, "
+                                      "events.jsonl, scene.textproto and, of a "
+                                      "scene that has one, render_mesh.pb")
+                         ->type_name("DIR");
   verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
       ->check(CountWithin(0, int64_t{1} << 40))
       ->type_name("FRAME");
@@ -110,7 +114,12 @@ void AddWatch(CLI::App& app, Program& program) {
   verb->add_flag("--run", options->run, "Let a paused session run on first");
   AddGoalOptions(*verb, options->goal);
   verb->add_flag("--stay", options->stay, "Stay when the run is over, for frames to come");
-  verb->add_flag("--json", options->json, "A JSON line a frame on stdout");
+  verb->add_flag(
+          "--latest", options->latest,
+          "Keep up: whoever falls behind goes on at the newest key frame. What is left out is "
+          "told; nothing can be recorded")
+      ->excludes(out);
+  verb->add_flag("--json", options->json, "A JSON line a frame on stdout, and one a gap");
   verb->add_flag("--quiet,-q", options->quiet, "No progress on stderr");
   verb->footer(
       "Ctrl-C leaves; the session goes on. With --out, a later `watch` with the same folder goes\n"
@@ -122,6 +131,8 @@ void AddWatch(CLI::App& app, Program& program) {
       "  cleave watch bar-3f2a1c --server farm-3:7420 --out out/bar\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --rung preview --out out/small\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --region-box 0 0 0 1 1 1 --outside 0.01\n"
+      "  cleave watch bar-3f2a1c --server farm-3:7420 --latest   where the run is, not how it "
+      "went\n"
       "  cleave watch bar-3f2a1c --server farm-3:7420 --run      wake a paused session\n");
   verb->callback([options, &program] {
     program.action = [options](Program& shared) { return Watch(shared, *options); };

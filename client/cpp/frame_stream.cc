@@ -76,6 +76,7 @@ absl::Status FrameStream::Connect() {
   assembly_.clear();
   assembly_bytes_ = 0;
   events_.Clear();
+  gap_.reset();
   v1::StreamFramesResponse response;
   if (!reader_->Read(&response)) {
     const grpc::Status status = reader_->Finish();
@@ -179,6 +180,29 @@ absl::Status FrameStream::AddEvents(const v1::FrameEvents& events) {
   return absl::OkStatus();
 }
 
+absl::Status FrameStream::AddGap(const v1::Gap& gap) {
+  const bool is_due = options_.latest && assembly_bytes_ == 0 && !gap_.has_value();
+  if (!is_due || gap.first_frame() < 0 || gap.last_frame() < gap.first_frame())
+    return absl::DataLossError(absl::StrCat("frames ", gap.first_frame(), " to ", gap.last_frame(),
+                                            " are said to be left out where none may be"));
+  gap_ = FrameGap{gap.first_frame(), gap.last_frame()};
+  return absl::OkStatus();
+}
+
+absl::Status FrameStream::TakeGap(const FrameHeader& header, std::optional<FrameGap>& gap) {
+  if (!gap_.has_value()) return absl::OkStatus();
+  gap.swap(gap_);
+  if (header.kind != FrameKind::kKey || header.frame != gap->last_frame + 1)
+    return absl::DataLossError(absl::StrCat("frames up to ", gap->last_frame,
+                                            " are left out, but frame ", header.frame,
+                                            " is not the key frame behind them"));
+  // A server that cannot resume counts from the key frame where it began.
+  if (position_.has_value() && header.epoch == position_->epoch)
+    gap->first_frame = std::max(gap->first_frame, position_->frame + 1);
+  if (gap->first_frame > gap->last_frame) gap.reset();
+  return absl::OkStatus();
+}
+
 absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
   v1::StreamFramesResponse response;
   while (reader_->Read(&response)) {
@@ -191,6 +215,8 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
       return std::nullopt;
     } else if (response.has_events()) {
       CLEAVE_RETURN_IF_ERROR(AddEvents(response.events()));
+    } else if (response.has_gap()) {
+      CLEAVE_RETURN_IF_ERROR(AddGap(response.gap()));
     } else if (response.has_chunk()) {
       bool whole = false;
       CLEAVE_RETURN_IF_ERROR(AddChunk(response.chunk(), whole));
@@ -229,6 +255,7 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string byt
     if (header.frame == position_->frame && header.state_hash != position_->state_hash)
       return absl::DataLossError(
           absl::StrCat("frame ", header.frame, " is not the one that was given under this number"));
+    gap_.reset();  // of frames before one that was given
     return std::nullopt;
   }
   const bool continues = position_.has_value() && header.epoch == position_->epoch &&
@@ -239,6 +266,7 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::Accept(std::string byt
   if (events.frame() != 0 && events.frame() != header.frame)
     return absl::DataLossError(
         absl::StrCat("events of frame ", events.frame(), " came before frame ", header.frame));
+  CLEAVE_RETURN_IF_ERROR(TakeGap(header, frame.gap));
   if (decoder_.has_value()) CLEAVE_RETURN_IF_ERROR(decoder_->Apply(bytes));
   frame.events = std::move(events);
   position_ = FramePosition{header.epoch, header.frame, header.state_hash};

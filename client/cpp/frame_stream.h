@@ -55,16 +55,23 @@ struct FrameStreamOptions {
   std::function<void(const absl::Status& why, std::chrono::milliseconds delay)> on_cut;
 };
 
+// Frames that a viewer who wants the latest missed.
+struct FrameGap {
+  int64_t first_frame = 0;
+  int64_t last_frame = 0;
+};
+
 // One committed frame as it is in the session's log.
 struct StreamedFrame {
   FrameHeader header;
-  std::string bytes;       // exactly one frame (core/stream/FORMAT.md), checksums checked
-  v1::FrameEvents events;  // what broke in it; empty where nothing did or nobody asked
+  std::string bytes;            // exactly one frame (core/stream/FORMAT.md), checksums checked
+  v1::FrameEvents events;       // what broke in it; empty where nothing did or nobody asked
+  std::optional<FrameGap> gap;  // what was left out before it: only with `latest`
 };
 
-// The frames of a session in order, each once, across cuts of the connection and restarts of the
-// server: after a cut it goes on behind the last frame by (epoch, frame, state hash). Next from one
-// thread; Cancel from any.
+// The frames of a session in order, each once (with `latest`: at most), across cuts of the
+// connection and restarts of the server: after a cut it goes on behind the last frame by (epoch,
+// frame, state hash). Next from one thread; Cancel from any.
 class FrameStream {
  public:
   // `client` must outlive the stream.
@@ -109,6 +116,9 @@ class FrameStream {
   absl::StatusOr<std::optional<StreamedFrame>> ReadOne();
   absl::Status AddChunk(const v1::FrameChunk& chunk, bool& whole);
   absl::Status AddEvents(const v1::FrameEvents& events);
+  absl::Status AddGap(const v1::Gap& gap);
+  // What a new frame that came behind gap_ has to tell of it.
+  absl::Status TakeGap(const FrameHeader& header, std::optional<FrameGap>& gap);
   absl::StatusOr<std::optional<StreamedFrame>> Accept(std::string bytes);
   // After a failed attempt: waits, or says why not to go on.
   absl::Status Recover(const absl::Status& why);
@@ -129,6 +139,7 @@ class FrameStream {
   int64_t assembly_frame_ = 0;
   v1::FrameEvents events_;  // of the frame to come
   uint64_t events_bytes_ = 0;
+  std::optional<FrameGap> gap_;  // before the frame to come
 
   std::mutex mutex_;  // guards context_'s exchange against Cancel
   bool cancelled_ = false;

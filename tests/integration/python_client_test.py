@@ -172,6 +172,14 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(latest[0].tolerance, fine[0].tolerance)
         self.assertEqual(latest[-1].number, fine[-1].number)
         self.assertLess(len(latest), len(fine))
+        # With what is told to be left out, every frame is accounted for.
+        numbers = []
+        for frame in latest:
+            if frame.left_out is not None:
+                numbers += range(frame.left_out[0], frame.left_out[1] + 1)
+            numbers.append(frame.number)
+        self.assertEqual(numbers, [frame.number for frame in fine])
+        self.assertTrue(all(frame.left_out is None for frame in fine))
         with self.assertRaisesRegex(CleaveError, "is finer than"):
             list(session.frames(mesh=mesh, tolerance=0.5 * fine[0].tolerance))
 

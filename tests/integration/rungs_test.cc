@@ -274,6 +274,10 @@ TEST(RungsTest, WhoWantsTheLatestSkipsToTheNewestKeyFrame) {
   FrameStreamOptions options = Asking(Rung::kPreview);
   options.latest = true;
   FrameStream stream(*client, options);
+  auto first = stream.Next();
+  ASSERT_TRUE(first.ok() && first->has_value());
+  ASSERT_TRUE((*first)->gap.has_value());
+  EXPECT_EQ((*first)->gap->last_frame, (*first)->header.frame - 1);
   EXPECT_EQ(TakeAll(stream).back(), UndisturbedPreview().back());
 }
 

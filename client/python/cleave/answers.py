@@ -19,6 +19,7 @@ class Frame:
     events: object = None  # Events (events.py) where they were asked for
     tolerance: float = 0.0  # m, largest error of a coordinate against the simulation
     tolerances: object = None  # the same of each node, in frames with a region of interest
+    left_out: tuple = None  # (first, last) frame that was left out before it, with `latest`
 
 
 @dataclasses.dataclass(frozen=True)

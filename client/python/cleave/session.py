@@ -97,7 +97,8 @@ class Session:
         Goes on after cuts of the connection. `mesh` spares fetching it. With `events` frames tell
         what broke in them. `rung` ("preview", "standard", "fine", "lossless") or `tolerance` (m) is
         the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
-        have. With `latest` a slow reader skips to the newest key frame. In a `region` (a Region) the accuracy is exactly what was asked for, at least twice what
+        have. With `latest` a slow reader skips to the newest key frame, whose `left_out` tells what it
+        missed. In a `region` (a Region) the accuracy is exactly what was asked for, at least twice what
         is kept, and coarser elsewhere: frames tell the tolerances of their nodes. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
@@ -125,6 +126,7 @@ class Session:
             stream = self._client._frames.StreamFrames(request)
             try:
                 data = b""
+                gap = None
                 broken = frame_pb2.FrameEvents()
                 for message in stream:
                     event = message.WhichOneof("event")
@@ -142,6 +144,8 @@ class Session:
                                 f"frame {broken.frame} and the frame",
                             )
                         broken.MergeFrom(message.events)
+                    elif event == "gap":
+                        gap = message.gap
                     elif event == "chunk":
                         data += message.chunk.payload
                         if len(data) < message.chunk.frame_bytes:
@@ -149,6 +153,7 @@ class Session:
                         header, _ = split_frame(data)
                         # A server that cannot resume begins at a key frame before.
                         known = header.epoch == decoder.epoch and header.frame <= decoder.frame
+                        left_out, gap = _left_out(gap, header, decoder), None
                         if not known:
                             decoder.apply(data)
                         told = Events.of_message(broken) if events and not known else None
@@ -164,6 +169,7 @@ class Session:
                                 pieces.begin(told),
                                 given,
                                 None if region is None else decoder.tolerances + kept,
+                                left_out,
                             )
                         pieces.follow(told)
                         broken.Clear()
@@ -181,3 +187,19 @@ class Session:
             if attempt >= ATTEMPTS:
                 raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
             time.sleep(delay(attempt))
+
+
+def _left_out(gap, header, decoder):
+    """(first, last) of the frames that a viewer missed before the frame of a header, or None."""
+    if gap is None:
+        return None
+    if header.frame != gap.last_frame + 1:
+        raise CleaveError(
+            grpc.StatusCode.DATA_LOSS,
+            f"frames up to {gap.last_frame} are left out, but frame {header.frame} came",
+        )
+    # A server that cannot resume counts from the key frame where it began.
+    first = gap.first_frame
+    if header.epoch == decoder.epoch:
+        first = max(first, decoder.frame + 1)
+    return (first, gap.last_frame) if first <= gap.last_frame else None

@@ -85,6 +85,19 @@ class Server(CliTest):
         self.assertEqual(code, 7, errors)
         self.assertIn("keeps its frames at rung preview", errors)
 
+    def test_whoever_wants_the_latest_is_told_what_is_left_out(self):
+        scene = self.scene((BLOCK % 9).replace('"timing"', '"output": {"keyframe_interval": 4}, "timing"'))
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)
+        self.assertEqual(self.ask("step", "block", "-n", "9")[0], 0)
+        code, output, errors = self.ask("watch", "block", "--latest", "--json")
+        self.assertEqual(code, 0, errors)
+        gap, *frames = map(json.loads, output.splitlines())
+        self.assertEqual(gap, {"event": "gap", "first_frame": 0, "last_frame": 7})
+        self.assertEqual([frame["frame"] for frame in frames], [8, 9])
+        code, _, errors = self.ask("watch", "block", "--latest")
+        self.assertIn("8 frames were left out to keep up", errors)
+        self.assertEqual(self.ask("watch", "block", "--latest", "--out", self.folder / "out")[0], 2)
+
     def test_render_mesh_comes_with_a_recording_of_a_session(self):
         (self.folder / "fine.obj").write_text(
             "v 0 0 0\nv 0.4 0 0\nv 0 0.1 0\nv 0 0 0.1\nvt 0 0\n"

@@ -66,6 +66,13 @@ class FakeFrames : public v1::FrameService::Service {
     writer->Write(message);
     const int64_t last = request->has_stop_frame() ? request->stop_frame() : kFrames - 1;
     for (int64_t i = first; i <= last; ++i) {
+      if (i == gap_at) {
+        message.mutable_gap()->set_first_frame(gap_from == -1 ? i : gap_from);
+        message.mutable_gap()->set_last_frame(gap_to - 1);
+        writer->Write(message);
+        if (gap_twice) writer->Write(message);
+        i = gap_to;
+      }
       std::string bytes = frames[static_cast<size_t>(i)].bytes;
       if (i == damaged_frame) bytes[bytes.size() / 2] ^= 1;
       for (size_t at = 0; at < bytes.size(); at += 300) {
@@ -99,6 +106,10 @@ class FakeFrames : public v1::FrameService::Service {
   int cut_in_frame = -1;
   grpc::Status cut_status{grpc::StatusCode::UNAVAILABLE, "cut"};
   int damaged_frame = -1;
+  int64_t gap_at = -1;  // before this frame, those up to gap_to are left out, this one too
+  int64_t gap_to = 10;
+  int64_t gap_from = -1;  // what is told of it, where that is not gap_at
+  bool gap_twice = false;
   int refusals = 0;
   bool can_resume = true;
   bool heartbeat = true;
@@ -196,6 +207,76 @@ TEST(FrameStream, DamagedFrameIsDataLossAndNoFrame) {
   absl::Status status;
   EXPECT_EQ(Drain(stream, status), Numbers(0, 3));
   EXPECT_TRUE(absl::IsDataLoss(status)) << status;
+}
+
+TEST(FrameStream, TellsWhatWasLeftOutBeforeAFrame) {
+  FakeFrames service;
+  FakeServer server(service);
+  service.gap_at = 3;
+  FrameStreamOptions options = Options();
+  options.latest = true;
+  options.rest_positions = RestPositions();
+  FrameStream stream(server.client(), options);
+  std::vector<int64_t> numbers;
+  for (auto frame = stream.Next(); frame.ok() && frame->has_value(); frame = stream.Next()) {
+    numbers.push_back((*frame)->header.frame);
+    ASSERT_EQ((*frame)->gap.has_value(), numbers.back() == 10);
+    if (!(*frame)->gap.has_value()) continue;
+    EXPECT_EQ((*frame)->gap->first_frame, 3);
+    EXPECT_EQ((*frame)->gap->last_frame, 9);
+  }
+  EXPECT_TRUE(stream.end().has_value());
+  EXPECT_THAT(numbers, testing::ElementsAre(0, 1, 2, 10, 11));
+}
+
+TEST(FrameStream, GapOfFramesThatWereGivenIsNone) {
+  FakeFrames service;
+  FakeServer server(service);
+  service.can_resume = false;
+  FrameStreamOptions options = Options();
+  options.latest = true;
+  const auto resume_behind = [&](int64_t frame) {
+    options.resume =
+        FramePosition{0, frame, service.frames[static_cast<size_t>(frame)].header.state_hash};
+    FrameStream stream(server.client(), options);
+    std::vector<std::optional<FrameGap>> gaps;
+    for (auto next = stream.Next(); next.ok() && next->has_value(); next = stream.Next())
+      gaps.push_back((*next)->gap);
+    return gaps;
+  };
+  // The server counts from key frame 5; the viewer has 7.
+  service.gap_at = 5;
+  auto gaps = resume_behind(7);
+  ASSERT_EQ(gaps.size(), 2u);
+  ASSERT_TRUE(gaps[0].has_value());
+  EXPECT_EQ(gaps[0]->first_frame, 8);
+  gaps = resume_behind(9);
+  ASSERT_EQ(gaps.size(), 2u);
+  EXPECT_FALSE(gaps[0].has_value());
+  gaps = resume_behind(10);
+  ASSERT_EQ(gaps.size(), 1u);
+  EXPECT_FALSE(gaps[0].has_value());
+}
+
+TEST(FrameStream, GapThatNobodyAskedForOrThatIsNoneIsDataLoss) {
+  const auto status_of = [](bool latest, const auto& spoil) {
+    FakeFrames service;
+    FakeServer server(service);
+    service.gap_at = 3;
+    spoil(service);
+    FrameStreamOptions options = Options();
+    options.latest = latest;
+    FrameStream stream(server.client(), options);
+    absl::Status status;
+    EXPECT_THAT(Drain(stream, status), testing::ElementsAre(0, 1, 2));
+    return status;
+  };
+  EXPECT_TRUE(absl::IsDataLoss(status_of(false, [](FakeFrames&) {})));
+  for (const int64_t from : {int64_t{10}, int64_t{-7}}) {
+    EXPECT_TRUE(absl::IsDataLoss(status_of(true, [&](FakeFrames& s) { s.gap_from = from; })));
+  }
+  EXPECT_TRUE(absl::IsDataLoss(status_of(true, [](FakeFrames& s) { s.gap_twice = true; })));
+  EXPECT_TRUE(absl::IsDataLoss(status_of(true, [](FakeFrames& s) { s.gap_to = 9; })));  // no key
 }
 
 TEST(FrameStream, ServerThatRestartsIsWaitedFor) {
