@@ -31,6 +31,15 @@ struct FrictionSpring {
     const double length = stretch.norm();
     return (Sticks(length) ? stiffness : cap / length) * plane;
   }
+  // N/m, the energy's own second derivative in that plane, semidefinite: 0 along a stretch that
+  // slips.
+  Eigen::Matrix3d ExactStiffness(const Eigen::Vector3d& stretch,
+                                 const Eigen::Vector3d& normal) const {
+    const double length = stretch.norm();
+    if (Sticks(length)) return Stiffness(stretch, normal);
+    const Eigen::Vector3d along = stretch / length;
+    return Stiffness(stretch, normal) - cap / length * along * along.transpose();
+  }
   // The stretch that is left when what is beyond either cap has slipped away.
   Eigen::Vector3d Kept(const Eigen::Vector3d& stretch, double next_cap) const {
     const double length = stretch.norm();

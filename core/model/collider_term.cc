@@ -293,7 +293,8 @@ void ColliderTerm::AddSpring(const Candidate& candidate, const Pose& pose, const
   couplings.AddNode(center + 1, block);
 }
 
-void ColliderTerm::AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) {
+void ColliderTerm::AddStiffness(const NodalVector& displacements, Curvature curvature,
+                                NodeCouplings& couplings) {
   auto candidate = candidates_.begin();
   for (size_t c = 0; c < parts_.size(); ++c) {
     const Part& part = parts_[c];
@@ -311,8 +312,10 @@ void ColliderTerm::AddStiffness(const NodalVector& displacements, NodeCouplings&
       if (candidate->friction_cap > 0) {
         const Vector anchor = pose.Apply(candidate->anchor);
         const FrictionSpring friction{candidate->stiffness, candidate->friction_cap};
-        const Matrix spring =
-            friction.Stiffness(Across(point - anchor, candidate->normal), candidate->normal);
+        const Vector stretch = Across(point - anchor, candidate->normal);
+        const Matrix spring = curvature == Curvature::kExact
+                                  ? friction.ExactStiffness(stretch, candidate->normal)
+                                  : friction.Stiffness(stretch, candidate->normal);
         AddSpring(*candidate, pose, spring, anchor - pose.to, couplings);
       }
     }

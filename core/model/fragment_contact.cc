@@ -204,7 +204,8 @@ double FragmentContact::AddForces(const NodalVector& displacements, NodalVector&
   return energy;
 }
 
-void FragmentContact::AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) {
+void FragmentContact::AddStiffness(const NodalVector& displacements, Curvature curvature,
+                                   NodeCouplings& couplings) {
   ForSprings(displacements, [&](int32_t i, int32_t j, const Vector& apart, double pressed,
                                 double stiffness, size_t pair) {
     Eigen::Matrix3d spring = Eigen::Matrix3d::Zero();
@@ -215,7 +216,9 @@ void FragmentContact::AddStiffness(const NodalVector& displacements, NodeCouplin
     if (pair < sighted_.size() && active_[pair].cap > 0) {
       const FrictionSpring friction{stiffness, active_[pair].cap};
       const Vector stretch = Across(apart - ToEigen(sighted_[pair].anchor), active_[pair].normal);
-      spring += friction.Stiffness(stretch, active_[pair].normal);
+      spring += curvature == Curvature::kExact
+                    ? friction.ExactStiffness(stretch, active_[pair].normal)
+                    : friction.Stiffness(stretch, active_[pair].normal);
     }
     const Double4 block[3] = {ToLanes(spring.col(0)), ToLanes(spring.col(1)),
                               ToLanes(spring.col(2))};

@@ -39,7 +39,8 @@ class FragmentContact final : public NodeTerm {
   void BeginStep(double start, double end, const State& state) override;
   void AddInfluences(std::vector<Influence>& influences) const override;
   double AddForces(const NodalVector& displacements, NodalVector& forces) override;
-  void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) override;
+  void AddStiffness(const NodalVector& displacements, Curvature curvature,
+                    NodeCouplings& couplings) override;
   double RoundingForce(const NodalVector& displacements) const override;
   NodeTermWork EndStep(const State& state) override;
   void Save(ByteWriter& out) const override;

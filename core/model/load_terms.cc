@@ -212,7 +212,8 @@ class PressureTerm final : public LoadTerm {
     return pressure_ * volume;
   }
 
-  void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) override {
+  void AddStiffness(const NodalVector& displacements, Curvature /*curvature*/,
+                    NodeCouplings& couplings) override {
     if (pressure_ == 0) return;
     for (size_t i = 0; i < nodes_.size(); ++i)
       points_[i] = Position(i, displacements[static_cast<size_t>(nodes_[i])]) - apex_;

@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "core/base/bytes.h"
+#include "core/model/curvature.h"
 #include "core/model/nodal_vector.h"
 #include "core/model/node_couplings.h"
 
@@ -65,10 +66,12 @@ class NodeTerm {
   virtual void AddInfluences(std::vector<Influence>& influences) const { (void)influences; }
   // Adds -dE/dx (N) at displacements from rest (m) to `forces`; returns the energy E, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
-  // Adds the second derivative of E or a positive semidefinite stand-in for it. Nothing where
-  // forces do not depend on displacements.
-  virtual void AddStiffness(const NodalVector& displacements, NodeCouplings& couplings) {
+  // Adds the second derivative of E or a positive semidefinite stand-in for it; for kSemidefinite
+  // one that holds far from here too. Nothing where forces do not depend on displacements.
+  virtual void AddStiffness(const NodalVector& displacements, Curvature curvature,
+                            NodeCouplings& couplings) {
     (void)displacements;
+    (void)curvature;
     (void)couplings;
   }
   // N, norm of what rounding of positions may add to forces at these displacements, a few units in

@@ -10,6 +10,7 @@
 #include "absl/strings/string_view.h"
 #include "core/base/bytes.h"
 #include "core/damage/edge_projection.h"
+#include "core/model/curvature.h"
 #include "core/model/nodal_vector.h"
 
 namespace cleave {
@@ -23,12 +24,6 @@ namespace cleave {
 using EdgeBlocks = std::vector<float>;
 
 inline size_t EdgeBlocksSize(int64_t edge_count) { return 9 * static_cast<size_t>(edge_count + 1); }
-
-// Which second derivative of an energy.
-enum class Curvature {
-  kSemidefinite,  // negative eigenvalues of every element at 0: always leads downhill
-  kExact,         // may be indefinite, but converges quadratically
-};
 
 // An elastic energy over some tets or all. Ids are the solver's. Loops run on the caller's
 // TBB arena and give the same bits for any number of threads.
@@ -47,7 +42,8 @@ class TetTerm {
   }
   // Adds -dPsi/dx (N) at displacements from rest (m) to `forces`; returns the energy, J.
   virtual double AddForces(const NodalVector& displacements, NodalVector& forces) = 0;
-  // Adds every tet's second derivative to `blocks`.
+  // Adds every tet's second derivative to `blocks`; for kSemidefinite with negative eigenvalues at
+  // 0.
   virtual void AddStiffness(const NodalVector& displacements, Curvature curvature,
                             EdgeBlocks& blocks) = 0;
   // Adds the first Piola-Kirchhoff stress that may break edges, Pa, to that of each tet (a record a

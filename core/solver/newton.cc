@@ -175,7 +175,8 @@ void NewtonSolver::Assemble(const NodalVector& displacements, Curvature curvatur
   ScopedTimer timer(report.assembly_seconds);
   EdgeBlocks& blocks = matrix_.Clear();
   for (const auto& term : model_.tet_terms) term->AddStiffness(displacements, curvature, blocks);
-  for (const auto& term : model_.node_terms) term->AddStiffness(displacements, matrix_.couplings());
+  for (const auto& term : model_.node_terms)
+    term->AddStiffness(displacements, curvature, matrix_.couplings());
   matrix_.Finish(inertia_);
   for (size_t node = 0; node < model_.mesh->rest_positions.size(); ++node)
     trial_[node] = ToDouble4(model_.mesh->rest_positions[node]) + displacements[node];

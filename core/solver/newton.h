@@ -24,10 +24,10 @@ namespace cleave {
 //
 // N being the energy of the node terms, over the coordinates that are not given, by Newton's method
 // with positive semidefinite element stiffness and Armijo backtracking. Where the projection itself
-// slows convergence down, the exact stiffness is tried, for as long as the linear solve finds it
-// positive. A linear solve goes no further than the step needs. Source: method note, section 7. Not
-// thread-safe; loops run on the caller's TBB arena and give the same bits for any number of
-// threads.
+// slows convergence down, or what stands in for friction that slips, the exact stiffness is tried,
+// for as long as the linear solve finds it positive. A linear solve goes no further than the step
+// needs. Source: method note, section 7. Not thread-safe; loops run on the caller's TBB arena and
+// give the same bits for any number of threads.
 class NewtonSolver {
  public:
   // `model` must outlive the solver.

@@ -28,5 +28,21 @@ TEST(FrictionSpring, TheParabolaOfItsStiffnessTouchesItsEnergyAndLiesAboveIt) {
   }
 }
 
+TEST(FrictionSpring, ItsExactStiffnessIsWhatItsForceChangesBy) {
+  const FrictionSpring spring{50, 2};
+  const Vector normal(0, 0, 1);
+  constexpr double kDifference = 1e-7;
+  for (const double length : {0.01, 0.03, 0.05, 0.1, 3.0}) {
+    const Vector at = length * Vector(0.6, -0.8, 0);
+    const Eigen::Matrix3d stiffness = spring.ExactStiffness(at, normal);
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vector step = kDifference * Vector::Unit(axis);
+      const Vector change = (spring.Force(at + step) - spring.Force(at - step)) / (2 * kDifference);
+      EXPECT_LT((stiffness.col(axis) + change).norm(), 1e-5) << length << " " << axis;
+    }
+    EXPECT_EQ((stiffness * normal).norm(), 0);
+  }
+}
+
 }  // namespace
 }  // namespace cleave

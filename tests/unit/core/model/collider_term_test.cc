@@ -134,7 +134,7 @@ TEST(ColliderTerm, StiffnessIsTheSlopeOfTheForcesWhereSurfacesAreFlat) {
   term.BeginStep(kStep, 2 * kStep, f.state);
   const NodalVector x = f.Moved(1e-4);
   NodeCouplings couplings;
-  term.AddStiffness(x, couplings);
+  term.AddStiffness(x, Curvature::kSemidefinite, couplings);
   couplings.Gather();
   ASSERT_FALSE(couplings.empty());
   constexpr double kDifference = 1e-6;
@@ -162,7 +162,7 @@ TEST(ColliderTerm, StiffnessIsPositiveAndSymmetric) {
   f.Touch();
   const NodalVector x = f.Moved(0.01);
   NodeCouplings couplings;
-  f.term.AddStiffness(x, couplings);
+  f.term.AddStiffness(x, Curvature::kSemidefinite, couplings);
   couplings.Gather();
   const auto count = static_cast<Eigen::Index>(3 * x.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);

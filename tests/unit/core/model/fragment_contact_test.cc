@@ -76,7 +76,7 @@ TEST(FragmentContact, ForcesAndStiffnessAreSlopesAndPairsCancel) {
     EXPECT_LT(std::sqrt(Dot(sum, sum)), 1e-13 * size);
 
     NodeCouplings couplings;
-    f.term().AddStiffness(x, couplings);
+    f.term().AddStiffness(x, Curvature::kSemidefinite, couplings);
     couplings.Gather();
     constexpr double kDifference = 1e-7;
     for (size_t n = 0; n < x.size(); ++n) {

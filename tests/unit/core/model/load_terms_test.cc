@@ -179,7 +179,7 @@ TEST_F(LoadTerms, ForcesAndStiffnessOfPressureAreSlopesOfItsEnergy) {
         (term->AddForces(moved(h), ahead) - term->AddForces(moved(-h), behind)) / (2 * h);
     term->AddForces(at, forces);
     NodeCouplings couplings;
-    term->AddStiffness(at, couplings);
+    term->AddStiffness(at, Curvature::kSemidefinite, couplings);
     couplings.Gather();
     NodalVector product = Zeros();
     for (const auto& entry : couplings.Rows(0, mesh_.node_count())) {

@@ -124,6 +124,18 @@ TEST(Colliders, FrictionTakesItsForceAlongTheWay) {
   EXPECT_NEAR(Budget(report, 8), 0, 1e-4 * 8);
 }
 
+TEST(Colliders, ABlockThatSlidesTakesAFewIterationsAStep) {
+  Scene scene = BlockScene(0.01);
+  AddCollider(scene, PlaneShape{}, 0.2);
+  scene.initial_velocities.emplace_back().velocity = {2, 0, 0};
+  auto simulation = *Simulation::Create(scene, Block(), {});
+  RunFrames(*simulation, 20);
+  int32_t iterations = 0;
+  for (int frame = 0; frame < 20; ++frame)
+    iterations += RunFrames(*simulation, 1).newton_iterations;
+  EXPECT_LE(iterations, 20 * 6);
+}
+
 TEST(Colliders, FrictionHoldsABlockWithoutCreep) {
   Scene scene = BlockScene(0.01);
   scene.gravity = Vec3{kGravity * std::sin(0.3), 0, -kGravity * std::cos(0.3)};
