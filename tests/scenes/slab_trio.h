@@ -16,8 +16,10 @@ absl::StatusOr<Demonstration> MakeSlabTrio(const Setting& setting);
 
 // center_from_pulled and trace_thickness as shares of the length, trace_angle to the direction of
 // 35 degrees, strain_to_crack: from the largest strain before the first fracture to the nearest
-// edge of it, in cells. And seconds a Newton iteration, by stage: a body that breaks in more passes
-// needs more of them, whatever each costs.
+// edge of it, in cells. And what a solve takes, of which steps have one and one more for each break
+// pass: Newton iterations, and iterations of the linear solve in each. Not seconds, which on a busy
+// machine tell of others; what either iteration costs with fibres or impurities is in `cleave_bench
+// ratios`.
 //
 // Of projected and turned ones, against the isotropic slab of the same mesh with uniform weakening:
 // common_edges, the edges broken in both, of those broken in either; common_crack, the share of the
