@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/mesh/triangle_halves.h"
+
 namespace cleave {
 namespace {
 
@@ -71,14 +73,9 @@ int32_t SurfaceDistance::Build(int32_t begin, int32_t end) {
   }
   int32_t right = -1;
   if (end - begin > kLeaf) {
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    const int32_t middle = begin + (end - begin) / 2;
-    std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle,
-                     triangles_.begin() + end, [axis](const Triangle& a, const Triangle& b) {
-                       return a.corners[0][axis] + a.corners[1][axis] + a.corners[2][axis] <
-                              b.corners[0][axis] + b.corners[1][axis] + b.corners[2][axis];
-                     });
+    const int32_t middle = SplitInHalves(
+        high - low, begin, end, triangles_,
+        [](const Triangle& triangle) -> const auto& { return triangle.corners; });
     Build(begin, middle);
     right = Build(middle, end);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/mesh/triangle_halves.h"
+
 namespace cleave {
 namespace {
 
@@ -61,14 +63,9 @@ int32_t WindingNumber::Build(int32_t begin, int32_t end) {
       node.radius = std::max(node.radius, (corner - node.center).norm());
   }
   if (end - begin > kLeaf) {
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    const int32_t middle = begin + (end - begin) / 2;
-    std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle,
-                     triangles_.begin() + end, [axis](const Triangle& a, const Triangle& b) {
-                       return a[0][axis] + a[1][axis] + a[2][axis] <
-                              b[0][axis] + b[1][axis] + b[2][axis];
-                     });
+    const int32_t middle = SplitInHalves(
+        high - low, begin, end, triangles_,
+        [](const Triangle& triangle) -> const auto& { return triangle; });
     Build(begin, middle);
     node.right = Build(middle, end);
   }

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/parallel.h"
+#include "core/stream/position_chunk.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -67,15 +68,10 @@ void AppendExactPositions(const StreamHeader& stream, bool key, std::span<const 
                           FrameHeader& header, std::string& body) {
   const auto nodes = static_cast<int64_t>(stream.node_count);
   const auto chunk_nodes = static_cast<int64_t>(stream.chunk_nodes);
-  struct Chunk {
-    Prediction prediction = Prediction::kRest;
-    uint32_t raw_bytes = 0;
-    std::string coded;
-  };
-  std::vector<Chunk> chunks(static_cast<size_t>((nodes + chunk_nodes - 1) / chunk_nodes));
+  std::vector<PositionChunk> chunks(static_cast<size_t>((nodes + chunk_nodes - 1) / chunk_nodes));
   ParallelFor(static_cast<int64_t>(chunks.size()), 1, [&](int64_t from, int64_t to) {
     for (int64_t index = from; index < to; ++index) {
-      Chunk& chunk = chunks[static_cast<size_t>(index)];
+      PositionChunk& chunk = chunks[static_cast<size_t>(index)];
       const auto begin = static_cast<size_t>(3 * index * chunk_nodes);
       const auto end = static_cast<size_t>(3 * std::min(nodes, (index + 1) * chunk_nodes));
       const std::span<const int64_t> ranks = next.subspan(begin, end - begin);
@@ -96,17 +92,7 @@ void AppendExactPositions(const StreamHeader& stream, bool key, std::span<const 
     }
   });
   for (int64_t index = 0; index < static_cast<int64_t>(chunks.size()); ++index) {
-    const Chunk& chunk = chunks[static_cast<size_t>(index)];
-    const int64_t first = index * chunk_nodes;
-    AppendSection({.type = SectionType::kPositions,
-                   .coder = static_cast<uint8_t>(stream.coder_id),
-                   .prediction = chunk.prediction,
-                   .raw_bytes = chunk.raw_bytes,
-                   .first = static_cast<uint32_t>(first),
-                   .count = static_cast<uint32_t>(std::min(chunk_nodes, nodes - first)),
-                   .coded = chunk.coded},
-                  body);
-    ++header.section_count;
+    AppendPositionChunk(stream, index, chunks[static_cast<size_t>(index)], header, body);
   }
 }
 

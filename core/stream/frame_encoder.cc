@@ -12,6 +12,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/stream/exact_positions.h"
+#include "core/stream/position_chunk.h"
 #include "core/stream/section_coder.h"
 
 namespace cleave {
@@ -258,16 +259,11 @@ void FrameEncoder::AppendPositions(bool key, FrameHeader& header, std::string& b
   const auto nodes = static_cast<int64_t>(header_.node_count);
   const auto chunk_nodes = static_cast<int64_t>(header_.chunk_nodes);
   const int64_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
-  struct Chunk {
-    Prediction prediction = Prediction::kRest;
-    uint32_t raw_bytes = 0;
-    std::string coded;
-  };
-  std::vector<Chunk> coded(static_cast<size_t>(chunks));
+  std::vector<PositionChunk> coded(static_cast<size_t>(chunks));
   const auto encode_chunk = [&](int64_t index, std::vector<int32_t>& residuals) {
     const auto begin = static_cast<size_t>(3 * index * chunk_nodes);
     const auto end = static_cast<size_t>(3 * std::min(nodes, (index + 1) * chunk_nodes));
-    Chunk& chunk = coded[static_cast<size_t>(index)];
+    PositionChunk& chunk = coded[static_cast<size_t>(index)];
     residuals.resize(end - begin);
     if (key) {
       for (size_t at = begin; at < end; ++at) residuals[at - begin] = next_[at] - rest_[at];
@@ -304,17 +300,7 @@ void FrameEncoder::AppendPositions(bool key, FrameHeader& header, std::string& b
     for (int64_t index = begin; index < end; ++index) encode_chunk(index, residuals);
   });
   for (int64_t index = 0; index < chunks; ++index) {
-    const Chunk& chunk = coded[static_cast<size_t>(index)];
-    const int64_t first = index * chunk_nodes;
-    AppendSection({.type = SectionType::kPositions,
-                   .coder = static_cast<uint8_t>(header_.coder_id),
-                   .prediction = chunk.prediction,
-                   .raw_bytes = chunk.raw_bytes,
-                   .first = static_cast<uint32_t>(first),
-                   .count = static_cast<uint32_t>(std::min(chunk_nodes, nodes - first)),
-                   .coded = chunk.coded},
-                  body);
-    ++header.section_count;
+    AppendPositionChunk(header_, index, coded[static_cast<size_t>(index)], header, body);
   }
 }
 

@@ -248,8 +248,10 @@ void InterpolationEncoder::AppendPositions(const ResidualCoder* coder, FrameHead
   ParallelFor(chunks, 1, [&](int64_t from, int64_t to) {
     for (int64_t index = from; index < to; ++index) {
       Chunk& chunk = chunks_[static_cast<size_t>(index)];
-      chunk.raw_bytes = 0;
-      chunk.coded.clear();
+      PositionChunk& section = chunk.section;
+      section.prediction = Prediction::kInterpolation;
+      section.raw_bytes = 0;
+      section.coded.clear();
       const int64_t first = index * chunk_nodes;
       std::span<const int32_t> moving =
           std::span(all_places_)
@@ -270,30 +272,21 @@ void InterpolationEncoder::AppendPositions(const ResidualCoder* coder, FrameHead
           for (int axis = 0; axis < 3; ++axis) values.push_back(r[axis]);
         }
         const std::string planes = ToBytePlanes(values);
-        chunk.raw_bytes = static_cast<uint32_t>(planes.size());
+        section.raw_bytes = static_cast<uint32_t>(planes.size());
         if (!planes.empty()) {
-          chunk.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / values.size()));
+          section.coded = CodeParts(planes, static_cast<uint32_t>(planes.size() / values.size()));
         }
       } else {
         chunk.counts = {};
-        chunk.coded =
+        section.coded =
             coder->Encode(moving, residuals_, next.activities, chunk.counts, chunk.writer);
-        if (!chunk.coded.empty()) chunk.raw_bytes = static_cast<uint32_t>(12 * moving.size());
+        if (!section.coded.empty()) section.raw_bytes = static_cast<uint32_t>(12 * moving.size());
       }
     }
   });
   for (int64_t index = 0; index < chunks; ++index) {
     const Chunk& chunk = chunks_[static_cast<size_t>(index)];
-    const int64_t first = index * chunk_nodes;
-    AppendSection({.type = SectionType::kPositions,
-                   .coder = static_cast<uint8_t>(header_.coder_id),
-                   .prediction = Prediction::kInterpolation,
-                   .raw_bytes = chunk.raw_bytes,
-                   .first = static_cast<uint32_t>(first),
-                   .count = static_cast<uint32_t>(std::min(chunk_nodes, nodes - first)),
-                   .coded = chunk.coded},
-                  body);
-    ++header.section_count;
+    AppendPositionChunk(header_, index, chunk.section, header, body);
     if (coder != nullptr) next.counts.Add(chunk.counts);
   }
 }

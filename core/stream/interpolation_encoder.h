@@ -16,6 +16,7 @@
 #include "core/stream/frame_header.h"
 #include "core/stream/frame_motion.h"
 #include "core/stream/interpolation_predictor.h"
+#include "core/stream/position_chunk.h"
 #include "core/stream/rans.h"
 #include "core/stream/region.h"
 #include "core/stream/residual_coder.h"
@@ -67,8 +68,7 @@ class InterpolationEncoder {
   struct Chunk {
     std::vector<int32_t> moving;  // its places, where some hold
     RansWriter writer;
-    uint32_t raw_bytes = 0;
-    std::string coded;
+    PositionChunk section;
     SymbolCounts counts;
   };
   struct PlacedRegion {

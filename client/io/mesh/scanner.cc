@@ -67,9 +67,10 @@ absl::string_view Scanner::Token(absl::string_view what) {
   return token;
 }
 
-double Scanner::Number(absl::string_view what) {
+template <typename T>
+T Scanner::Value(absl::string_view what) {
   const absl::string_view token = PeekToken();
-  double value = 0;
+  T value = 0;
   if (!ok()) return 0;
   if (!Parse(token, value)) {
     FailExpecting(what, token);
@@ -79,17 +80,9 @@ double Scanner::Number(absl::string_view what) {
   return value;
 }
 
-int64_t Scanner::Integer(absl::string_view what) {
-  const absl::string_view token = PeekToken();
-  int64_t value = 0;
-  if (!ok()) return 0;
-  if (!Parse(token, value)) {
-    FailExpecting(what, token);
-    return 0;
-  }
-  offset_ += token.size();
-  return value;
-}
+double Scanner::Number(absl::string_view what) { return Value<double>(what); }
+
+int64_t Scanner::Integer(absl::string_view what) { return Value<int64_t>(what); }
 
 int64_t Scanner::Count(absl::string_view what) {
   const absl::string_view token = PeekToken();

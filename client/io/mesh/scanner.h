@@ -72,6 +72,8 @@ class Scanner {
 
  private:
   void SkipBlanks();
+  template <typename T>
+  T Value(absl::string_view what);
   void FailExpecting(absl::string_view what, absl::string_view found);
 
   absl::string_view bytes_;
