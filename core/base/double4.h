@@ -31,12 +31,15 @@ inline Double4 Max(Double4 a, Double4 b) { return a > b ? a : b; }
 inline Double4 Abs(Double4 v) { return v < 0 ? -v : v; }
 inline double Sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline double Dot(Double4 a, Double4 b) { return Sum(a * b); }
-inline bool Any(Int64x4 mask) {
+// Of what a comparison gave, which compilers have different names for.
+template <typename Mask>
+requires(sizeof(Mask) == sizeof(Int64x4)) bool Any(Mask mask) {
 #ifdef __AVX__
   const auto bits = reinterpret_cast<__m256i>(mask);
   return _mm256_testz_si256(bits, bits) == 0;
 #else
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+  const auto bits = reinterpret_cast<Int64x4>(mask);
+  return (bits[0] | bits[1] | bits[2] | bits[3]) != 0;
 #endif
 }
 
@@ -67,13 +70,12 @@ inline Double4 LoadFloats(const float* source) { return Widen(LoadFloat4(source)
 // One lane in all four.
 template <int kLane>
 Double4 SplatLane(Double4 v) {
-  return __builtin_shuffle(v, Int64x4{kLane, kLane, kLane, kLane});
+  return __builtin_shufflevector(v, v, kLane, kLane, kLane, kLane);
 }
 
 template <int kLane>
 Float4 SplatLane(Float4 v) {
-  typedef int32_t Int32x4 __attribute__((vector_size(16)));
-  return __builtin_shuffle(v, Int32x4{kLane, kLane, kLane, kLane});
+  return __builtin_shufflevector(v, v, kLane, kLane, kLane, kLane);
 }
 
 // a * b + c, rounded once where the processor can: the same bits for every run of a build.
@@ -97,14 +99,14 @@ inline Float4 MultiplyAdd(Float4 a, Float4 b, Float4 c) {
 // The square of sixteen numbers whose rows are given, turned about its diagonal: what was lane k of
 // row l becomes lane l of row k.
 inline void Transpose(Double4& a, Double4& b, Double4& c, Double4& d) {
-  const Double4 ac_low = __builtin_shuffle(a, c, Int64x4{0, 4, 1, 5});
-  const Double4 ac_high = __builtin_shuffle(a, c, Int64x4{2, 6, 3, 7});
-  const Double4 bd_low = __builtin_shuffle(b, d, Int64x4{0, 4, 1, 5});
-  const Double4 bd_high = __builtin_shuffle(b, d, Int64x4{2, 6, 3, 7});
-  a = __builtin_shuffle(ac_low, bd_low, Int64x4{0, 4, 1, 5});
-  b = __builtin_shuffle(ac_low, bd_low, Int64x4{2, 6, 3, 7});
-  c = __builtin_shuffle(ac_high, bd_high, Int64x4{0, 4, 1, 5});
-  d = __builtin_shuffle(ac_high, bd_high, Int64x4{2, 6, 3, 7});
+  const Double4 ac_low = __builtin_shufflevector(a, c, 0, 4, 1, 5);
+  const Double4 ac_high = __builtin_shufflevector(a, c, 2, 6, 3, 7);
+  const Double4 bd_low = __builtin_shufflevector(b, d, 0, 4, 1, 5);
+  const Double4 bd_high = __builtin_shufflevector(b, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ac_low, bd_low, 0, 4, 1, 5);
+  b = __builtin_shufflevector(ac_low, bd_low, 2, 6, 3, 7);
+  c = __builtin_shufflevector(ac_high, bd_high, 0, 4, 1, 5);
+  d = __builtin_shufflevector(ac_high, bd_high, 2, 6, 3, 7);
 }
 
 }  // namespace cleave

@@ -52,8 +52,6 @@ inline Float8 Sqrt(Float8 v) {
 inline Float8 Max(Float8 a, Float8 b) { return a > b ? a : b; }
 inline Float8 Abs(Float8 v) { return v < 0 ? -v : v; }
 
-inline bool Any(Int32x8 mask) { return Any(reinterpret_cast<Int64x4>(mask)); }
-
 inline Float4 LowHalf(Float8 v) { return Float4{v[0], v[1], v[2], v[3]}; }
 inline Float4 HighHalf(Float8 v) { return Float4{v[4], v[5], v[6], v[7]}; }
 inline Float8 Join(Float4 low, Float4 high) {
@@ -66,16 +64,14 @@ inline Double4 Fold(Float8 v) { return Widen(LowHalf(v)) + Widen(HighHalf(v)); }
 
 // Transpose of double4.h, of the low halves and of the high ones.
 inline void Transpose(Float8& a, Float8& b, Float8& c, Float8& d) {
-  constexpr Int32x8 kLow = {0, 8, 1, 9, 4, 12, 5, 13};
-  constexpr Int32x8 kHigh = {2, 10, 3, 11, 6, 14, 7, 15};
-  const Float8 ac_low = __builtin_shuffle(a, c, kLow);
-  const Float8 ac_high = __builtin_shuffle(a, c, kHigh);
-  const Float8 bd_low = __builtin_shuffle(b, d, kLow);
-  const Float8 bd_high = __builtin_shuffle(b, d, kHigh);
-  a = __builtin_shuffle(ac_low, bd_low, kLow);
-  b = __builtin_shuffle(ac_low, bd_low, kHigh);
-  c = __builtin_shuffle(ac_high, bd_high, kLow);
-  d = __builtin_shuffle(ac_high, bd_high, kHigh);
+  const Float8 ac_low = __builtin_shufflevector(a, c, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 ac_high = __builtin_shufflevector(a, c, 2, 10, 3, 11, 6, 14, 7, 15);
+  const Float8 bd_low = __builtin_shufflevector(b, d, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Float8 bd_high = __builtin_shufflevector(b, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  a = __builtin_shufflevector(ac_low, bd_low, 0, 8, 1, 9, 4, 12, 5, 13);
+  b = __builtin_shufflevector(ac_low, bd_low, 2, 10, 3, 11, 6, 14, 7, 15);
+  c = __builtin_shufflevector(ac_high, bd_high, 0, 8, 1, 9, 4, 12, 5, 13);
+  d = __builtin_shufflevector(ac_high, bd_high, 2, 10, 3, 11, 6, 14, 7, 15);
 }
 
 }  // namespace cleave

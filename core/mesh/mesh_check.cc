@@ -1,6 +1,7 @@
 #include "core/mesh/mesh_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -65,11 +66,10 @@ bool CheckIds(const Tet& tet, int64_t id, int64_t node_count, Faults& faults) {
     }
   }
   for (const auto& [a, b] : kTetEdges) {
-    if (tet[static_cast<size_t>(a)] == tet[static_cast<size_t>(b)]) {
-      AddError(faults, "tets", id, [&] {
-        return absl::StrCat("names node ", tet[static_cast<size_t>(a)], " twice (", Nodes(tet),
-                            ")");
-      });
+    const int32_t node = tet[static_cast<size_t>(a)];
+    if (node == tet[static_cast<size_t>(b)]) {
+      AddError(faults, "tets", id,
+               [&] { return absl::StrCat("names node ", node, " twice (", Nodes(tet), ")"); });
       return false;
     }
   }
@@ -82,7 +82,8 @@ bool CheckShape(TetMesh& mesh, int64_t id, Faults& faults, Tally& swapped, Tally
   for (const Eigen::Vector3d& corner : corners) {
     if (!(corner.cwiseAbs().maxCoeff() <= limits::kMaxLength)) return false;  // told with its node
   }
-  const auto [shortest, longest] = EdgeRange(corners);
+  const std::array<double, 2> edges = EdgeRange(corners);
+  const double shortest = edges[0], longest = edges[1];
   const double volume = SignedVolume(corners);
   Tet& tet = mesh.tets[static_cast<size_t>(id)];
   if (!(shortest >= limits::kMinEdgeLength)) {

@@ -72,6 +72,8 @@ class ColliderTerm final : public NodeTerm {
   using Matrix = Eigen::Matrix3d;
 
   struct Body {
+    Body() {}  // or Clang takes it for one that nothing constructs: it is complete behind Part
+
     MassProperties mass;
     size_t unknown = 0;  // of the displacement; that of the turn is the next
     Vector scale;        // m/rad of the turn's unknown, by principal axis

@@ -58,9 +58,9 @@ class CoarseSpace {
   };
 
   static Double4 Cross(Double4 a, Double4 b) {
-    const Int64x4 next = {1, 2, 0, 3}, last = {2, 0, 1, 3};
-    return __builtin_shuffle(a, next) * __builtin_shuffle(b, last) -
-           __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
+    const auto next = [](Double4 v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); };
+    const auto last = [](Double4 v) { return __builtin_shufflevector(v, v, 2, 0, 1, 3); };
+    return next(a) * last(b) - last(a) * next(b);
   }
 
   // Adds the forces (N) with which a node pulls at its patch for each motion of a patch.

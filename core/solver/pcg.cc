@@ -158,10 +158,13 @@ absl::StatusOr<PcgSolver::Result> PcgSolver::SolveIn(Vectors<V>& vectors,
                                                      const StiffnessMatrix& matrix,
                                                      const NodalVector& rhs, double tolerance,
                                                      const StopFlag& stop, NodalVector& solution) {
-  auto& [residual, direction, product, preconditioned, float_solution] = vectors;
+  std::vector<V>& residual = vectors.residual;
+  std::vector<V>& direction = vectors.direction;
+  std::vector<V>& product = vectors.product;
+  std::vector<V>& preconditioned = vectors.preconditioned;
   const auto result_vector = [&]() -> std::vector<V>& {
     if constexpr (std::is_same_v<V, Float4>) {
-      return float_solution;
+      return vectors.solution;
     } else {
       return solution;
     }

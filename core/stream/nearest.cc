@@ -18,13 +18,13 @@ class EightLeast {
  public:
   void Add(int32_t key) {
     const Int32x8 keys = Int32x8{} + key;
-    const Int32x8 one_on = __builtin_shuffle(keys, least_, Int32x8{0, 8, 9, 10, 11, 12, 13, 14});
+    const Int32x8 one_on = __builtin_shufflevector(keys, least_, 0, 8, 9, 10, 11, 12, 13, 14);
     const Int32x8 at_least = one_on > keys ? one_on : keys;
     least_ = least_ < at_least ? least_ : at_least;
   }
   // The eighth of all that two of them were given.
   static int32_t Eighth(const EightLeast& a, const EightLeast& b) {
-    const Int32x8 turned = __builtin_shuffle(b.least_, Int32x8{7, 6, 5, 4, 3, 2, 1, 0});
+    const Int32x8 turned = __builtin_shufflevector(b.least_, b.least_, 7, 6, 5, 4, 3, 2, 1, 0);
     const Int32x8 least = a.least_ < turned ? a.least_ : turned;
     int32_t eighth = least[0];
     for (int lane = 1; lane < 8; ++lane) eighth = std::max(eighth, least[lane]);
