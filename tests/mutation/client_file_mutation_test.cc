@@ -5,14 +5,9 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
-
-// It needs size_t and FILE declared before it.
-#include <jpeglib.h>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -23,6 +18,7 @@
 #include "client/io/record/recording.h"
 #include "core/stream/frame_decoder.h"
 #include "tests/mutation/mutate.h"
+#include "tests/unit/client/io/impurity/jpeg_picture.h"
 #include "tests/unit/core/stream/golden_scene.h"
 #include "tests/unit/temporary_directory.h"
 
@@ -42,32 +38,6 @@ Image Drawing() {
     }
   }
   return image;
-}
-
-std::string Jpeg(Image image, bool progressive) {
-  jpeg_compress_struct info;
-  jpeg_error_mgr errors;
-  info.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&info);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = static_cast<JDIMENSION>(image.width);
-  info.image_height = static_cast<JDIMENSION>(image.height);
-  info.input_components = 3;
-  info.in_color_space = JCS_RGB;
-  jpeg_set_defaults(&info);
-  if (progressive) jpeg_simple_progression(&info);
-  jpeg_start_compress(&info, TRUE);
-  for (int y = 0; y < image.height; ++y) {
-    JSAMPROW row = image.at(0, y);
-    jpeg_write_scanlines(&info, &row, 1);
-  }
-  jpeg_finish_compress(&info);
-  const std::string result(reinterpret_cast<char*>(bytes), size);
-  jpeg_destroy_compress(&info);
-  std::free(bytes);
-  return result;
 }
 
 uint32_t BigEndian(const std::string& bytes, size_t at) {

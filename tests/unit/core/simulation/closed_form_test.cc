@@ -5,14 +5,11 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/simulation/run_frames.h"
 #include "tests/unit/core/solver/test_scene.h"
 
 namespace cleave {
 namespace {
-
-std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh) {
-  return *Simulation::Create(scene, mesh, Simulation::Options{});
-}
 
 constexpr double kFar = 1e6;
 
@@ -44,13 +41,8 @@ class UniaxialStretch : public ::testing::TestWithParam<Uniaxial> {};
 TEST_P(UniaxialStretch, NarrowsAndPullsAsTheClosedForm) {
   const TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
   Scene scene = TightScene(1, 0.3, 1e-9, 1);
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
   const auto [stretch, lateral, nominal] = GetParam();
   Motion& pull = AddMotion(scene, "x1", {true, false, false});
   pull.keyframes = {{0, {0, 0, 0}, 0}, {4, {stretch - 1, 0, 0}, 0}};
@@ -142,13 +134,8 @@ TEST(ClosedForm, ABarFirstBreaksAtItsStrengthTimesItsArea) {
     Scene scene = TightScene(1e6, 0.3, 1e-6, 1);
     scene.materials[0].tensile_strength = strength;
     scene.fracture.aggregation = aggregation;
-    AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+    AddSymmetryPlanes(scene);
     AddBoxSet(scene, "x1", {2 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-    AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-    AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-    AddMotion(scene, "x0", {true, false, false});
-    AddMotion(scene, "y0", {false, true, false});
-    AddMotion(scene, "z0", {false, false, true});
     // Just short of the stretch, at rest there, then just beyond.
     const double pull = 2 * (low - 1), hair = 1e-8;
     AddMotion(scene, "x1", {true, false, false}).keyframes = {{0, {0, 0, 0}, 0},

@@ -18,13 +18,8 @@ inline Scene PulledBar(const std::vector<std::pair<double, double>>& elongations
   constexpr double kFar = 1e6;
   Scene scene = TightScene(1e6, 0.3, 1e-3, 0.0025);
   scene.quality.residual_tolerance = 1e-8;
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
   Motion& pull = AddMotion(scene, "x1", {true, false, false});
   for (const auto& [time, elongation] : elongations)
     pull.keyframes.push_back({time, {elongation, 0, 0}, 0});

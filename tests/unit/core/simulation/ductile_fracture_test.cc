@@ -11,13 +11,10 @@
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/simulation/ductile_bar.h"
+#include "tests/unit/core/simulation/run_frames.h"
 
 namespace cleave {
 namespace {
-
-std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh) {
-  return *Simulation::Create(scene, mesh, Simulation::Options{});
-}
 
 double Largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());

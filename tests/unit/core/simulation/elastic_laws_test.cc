@@ -49,13 +49,8 @@ Vec3 PrincipalStress(ElasticLaw law, const Vec3& stretch, double youngs_modulus,
 // A bar along x from 0 to `length`, free to narrow, whose far end is pulled to `stretch`.
 Scene PulledBar(double length, double stretch, double poisson_ratio) {
   Scene scene = TightScene(1, poisson_ratio, 1e-9, 1);
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {length - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
   AddMotion(scene, "x1", {true, false, false}).keyframes = {{0, {0, 0, 0}, 0},
                                                             {4, {length * (stretch - 1), 0, 0}, 0}};
   return scene;

@@ -20,13 +20,8 @@ TetMesh Bar() { return KuhnBox({4, 2, 2}, {2, 1, 1}); }
 Scene SlowBar(int steps_per_cycle) {
   Scene scene = TightScene(1e6, 0.3, 1e-6, 1.0 / steps_per_cycle);
   scene.materials[0].tensile_strength = kStrength;
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {2 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
   AddMotion(scene, "x1", {true, false, false});
   return scene;
 }

@@ -16,13 +16,8 @@ constexpr double kFar = 1e6;
 // A unit cube of E = 1 Pa, nu = 0.3, pulled along x, free to narrow.
 Scene PulledCube(double strain) {
   Scene scene = TightScene(1, 0.3, 1e-9, 1);
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
   AddMotion(scene, "x1", {true, false, false}).keyframes = {{0, {0, 0, 0}, 0},
                                                             {10, {strain, 0, 0}, 0}};
   return scene;

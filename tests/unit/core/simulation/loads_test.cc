@@ -7,6 +7,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/simulation/fracture_run.h"
+#include "tests/unit/core/simulation/run_frames.h"
 
 namespace cleave {
 namespace {
@@ -14,33 +15,10 @@ namespace {
 const double kPi = std::acos(-1.0);
 constexpr double kFar = 1e6;
 
-std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh, int threads = 1) {
-  Simulation::Options options;
-  options.threads = threads;
-  return *Simulation::Create(scene, mesh, options);
-}
-
-FrameReport MustAdvance(Simulation& simulation) {
-  const StopFlag stop;
-  const auto report = simulation.Advance(stop);
-  EXPECT_TRUE(report.ok()) << report.status();
-  return report.ok() ? *report : FrameReport{};
-}
-
-// A quarter block that slides along its three inner sides.
-void Slide(Scene& scene) {
-  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
-  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
-  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
-  AddMotion(scene, "x0", {true, false, false});
-  AddMotion(scene, "y0", {false, true, false});
-  AddMotion(scene, "z0", {false, false, true});
-}
-
 TEST(Loads, ABarUnderATractionStretchesAsTheClosedForm) {
   const TetMesh mesh = KuhnBox({2, 2, 2}, {1, 1, 1});
   Scene scene = TightScene(1, 0.3, 1e-9, 1);
-  Slide(scene);
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "x1", {1 - 1e-9, -kFar, -kFar}, {kFar, kFar, kFar});
   scene.loads.push_back(
       {"x1", SurfaceTraction{{0.6538461538461537, 0, 0}}, {{0, 0}, {8, 1}}, std::nullopt});
@@ -72,7 +50,7 @@ double InflationOverLame(int across) {
   const double inner = 1, outer = 2, youngs = 1e6, poisson = 0.3, pressure = 10;
   const TetMesh mesh = QuarterTube(across, inner, outer);
   Scene scene = TightScene(youngs, poisson, 1e-6, 10);
-  Slide(scene);
+  AddSymmetryPlanes(scene);
   AddBoxSet(scene, "flat", {-kFar, -kFar, -kFar}, {kFar, kFar, kFar});
   AddMotion(scene, "flat", {false, false, true});
   scene.motions.erase(scene.motions.begin() + 2);  // z0 is in it

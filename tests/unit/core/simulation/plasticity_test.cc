@@ -11,22 +11,10 @@
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/simulation/ductile_bar.h"
+#include "tests/unit/core/simulation/run_frames.h"
 
 namespace cleave {
 namespace {
-
-std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh, int threads = 1) {
-  Simulation::Options options;
-  options.threads = threads;
-  return *Simulation::Create(scene, mesh, options);
-}
-
-FrameReport MustAdvance(Simulation& simulation) {
-  const StopFlag stop;
-  const auto report = simulation.Advance(stop);
-  EXPECT_TRUE(report.ok()) << report.status();
-  return report.ok() ? *report : FrameReport{};
-}
 
 // Frames up to a time.
 FrameReport MustAdvanceTo(double time, Simulation& simulation) {

@@ -9,6 +9,7 @@
 
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/simulation/fracture_run.h"
+#include "tests/unit/core/simulation/run_frames.h"
 
 namespace cleave {
 namespace {
@@ -18,13 +19,6 @@ std::unique_ptr<Simulation> MustCreate(Scene scene, Precision precision, int thr
   Simulation::Options options;
   options.threads = threads;
   return *Simulation::Create(scene, BreakingMesh(), options);
-}
-
-FrameReport MustAdvance(Simulation& simulation) {
-  const StopFlag stop;
-  const auto report = simulation.Advance(stop);
-  EXPECT_TRUE(report.ok()) << report.status();
-  return report.ok() ? *report : FrameReport{};
 }
 
 // |a - b| over |b - rest|.

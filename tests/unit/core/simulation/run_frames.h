@@ -3,9 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "core/simulation/simulation.h"
 
 namespace cleave {
+
+inline std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh,
+                                              int threads = 1) {
+  Simulation::Options options;
+  options.threads = threads;
+  return *Simulation::Create(scene, mesh, options);
+}
 
 // Goes on by so many frames; the last one's report.
 inline FrameReport RunFrames(Simulation& simulation, int frames) {
@@ -19,6 +28,8 @@ inline FrameReport RunFrames(Simulation& simulation, int frames) {
   }
   return last;
 }
+
+inline FrameReport MustAdvance(Simulation& simulation) { return RunFrames(simulation, 1); }
 
 // What the budget of energy leaves open, J: 0 where it closes. `start` is the energy at rest.
 inline double Budget(const FrameReport& report, double start) {

@@ -8,22 +8,10 @@
 #include <vector>
 
 #include "tests/unit/core/simulation/fracture_run.h"
+#include "tests/unit/core/simulation/run_frames.h"
 
 namespace cleave {
 namespace {
-
-std::unique_ptr<Simulation> MustCreate(const Scene& scene, const TetMesh& mesh, int threads = 1) {
-  Simulation::Options options;
-  options.threads = threads;
-  return *Simulation::Create(scene, mesh, options);
-}
-
-FrameReport MustAdvance(Simulation& simulation) {
-  const StopFlag stop;
-  const auto report = simulation.Advance(stop);
-  EXPECT_TRUE(report.ok()) << report.status();
-  return report.ok() ? *report : FrameReport{};
-}
 
 TEST(Simulation, ThreadsDoNotChangeABit) {
   auto one = MustCreate(BreakingScene(), BreakingMesh(), 1);

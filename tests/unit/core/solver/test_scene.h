@@ -42,6 +42,17 @@ inline Motion& AddMotion(Scene& scene, const std::string& set,
   return scene.motions.back();
 }
 
+// A body in the corner of x, y, z >= 0 slides along its sides there, as an eighth of a larger one.
+inline void AddSymmetryPlanes(Scene& scene) {
+  constexpr double kFar = 1e6;
+  AddBoxSet(scene, "x0", {-kFar, -kFar, -kFar}, {1e-9, kFar, kFar});
+  AddBoxSet(scene, "y0", {-kFar, -kFar, -kFar}, {kFar, 1e-9, kFar});
+  AddBoxSet(scene, "z0", {-kFar, -kFar, -kFar}, {kFar, kFar, 1e-9});
+  AddMotion(scene, "x0", {true, false, false});
+  AddMotion(scene, "y0", {false, true, false});
+  AddMotion(scene, "z0", {false, false, true});
+}
+
 }  // namespace cleave
 
 #endif  // CLEAVE_TESTS_UNIT_CORE_SOLVER_TEST_SCENE_H_

@@ -12,6 +12,7 @@
 #include "client/io/series/write_aside.h"
 #include "core/mesh/incidence.h"
 #include "tests/unit/client/io/export/vtu_reader.h"
+#include "tests/unit/client/io/two_tets.h"
 #include "tests/unit/temporary_directory.h"
 
 namespace cleave {
@@ -23,14 +24,6 @@ using ::cleave::testing::XmlReader;
 using ::testing::Contains;
 using ::testing::Each;
 using ::testing::HasSubstr;
-
-TetMesh TwoTets() {
-  TetMesh mesh;
-  mesh.rest_positions = {{0, 0, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.tets = {{1, 3, 2, 0}, {1, 2, 3, 4}};
-  mesh.tet_regions = {5, 6};
-  return mesh;
-}
 
 // Five frames; from the third on the tip, node 4, is broken off and flies up at 10 m/s.
 FrameSource FlyingTip(const TetMesh& mesh) {

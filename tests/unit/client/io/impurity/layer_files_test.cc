@@ -10,14 +10,12 @@
 #include <filesystem>
 #include <fstream>
 
-// It needs size_t and FILE declared before it.
-#include <jpeglib.h>
-
 #include "client/io/export/vtu.h"
 #include "client/io/impurity/picture_file.h"
 #include "client/io/impurity/ply_points.h"
 #include "client/io/mesh/vtu.h"
 #include "client/io/preview/image.h"
+#include "tests/unit/client/io/impurity/jpeg_picture.h"
 #include "tests/unit/temporary_directory.h"
 
 namespace cleave {
@@ -38,32 +36,6 @@ Image Bar() {
     }
   }
   return image;
-}
-
-std::string Jpeg(Image image) {
-  jpeg_compress_struct info;
-  jpeg_error_mgr errors;
-  info.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&info);
-  unsigned char* bytes = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&info, &bytes, &size);
-  info.image_width = static_cast<JDIMENSION>(image.width);
-  info.image_height = static_cast<JDIMENSION>(image.height);
-  info.input_components = 3;
-  info.in_color_space = JCS_RGB;
-  jpeg_set_defaults(&info);
-  jpeg_set_quality(&info, 95, TRUE);
-  jpeg_start_compress(&info, TRUE);
-  for (int y = 0; y < image.height; ++y) {
-    JSAMPROW row = image.at(0, y);
-    jpeg_write_scanlines(&info, &row, 1);
-  }
-  jpeg_finish_compress(&info);
-  const std::string result(reinterpret_cast<char*>(bytes), size);
-  jpeg_destroy_compress(&info);
-  std::free(bytes);
-  return result;
 }
 
 TEST(ParsePicture, ReadsPngAndJpegAlike) {

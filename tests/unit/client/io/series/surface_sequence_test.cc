@@ -7,6 +7,8 @@
 #include <limits>
 #include <set>
 
+#include "tests/unit/client/io/two_tets.h"
+
 namespace cleave {
 namespace {
 
@@ -14,15 +16,6 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::FloatNear;
 using ::testing::HasSubstr;
-
-// Two tets on a common face: nodes 0 and 4 are the tips.
-TetMesh TwoTets() {
-  TetMesh mesh;
-  mesh.rest_positions = {{0, 0, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.tets = {{1, 3, 2, 0}, {1, 2, 3, 4}};
-  mesh.tet_regions = {5, 6};
-  return mesh;
-}
 
 Frame AtRest(const TetMesh& mesh) {
   Frame frame;
