@@ -23,8 +23,9 @@ struct Record {
 absl::StatusOr<std::optional<Record>> ReadHead(const FileDescriptor& file, int64_t offset,
                                                int64_t file_size, const std::string& path) {
   if (file_size - offset < kHeadBytes) return std::nullopt;
-  CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadAt(file, offset, kHeadBytes, path));
-  ByteReader in(bytes);
+  const absl::StatusOr<std::string> bytes = ReadAt(file, offset, kHeadBytes, path);
+  if (!bytes.ok()) return bytes.status();
+  ByteReader in(*bytes);
   Record record{};
   record.frame = in.Get<int64_t>();
   record.bytes = in.Get<uint32_t>();

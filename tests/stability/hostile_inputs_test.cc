@@ -150,7 +150,7 @@ TEST_P(HostileInputTest, ComesOutAsItMust) {
 }
 
 INSTANTIATE_TEST_SUITE_P(MethodNote, HostileInputTest, ::testing::ValuesIn(AllTrials()),
-                         [](const auto& info) { return NameOf(info.param); });
+                         [](const auto& trial) { return NameOf(trial.param); });
 
 // 17 asks for more memory than machines have; what refuses it needs no mesh.
 TEST(HostileInput, Item17MoreNodesAndTetsThanIdsCanCountAreRefused) {

@@ -104,12 +104,13 @@ class Bake {
   absl::Status NamePieces(NamedPieces& pieces) {
     for (int64_t position = 0; position < frames_.count; ++position) {
       if (frames_.pass_by) {
-        CLEAVE_RETURN_IF_ERROR(frames_.pass_by(position, [&](const Frame& frame) -> absl::Status {
+        const auto name = [&](const Frame& frame) -> absl::Status {
           CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(),
                                             -std::numeric_limits<double>::infinity()));
           pieces.Break(frame.broken_edges);
           return absl::OkStatus();
-        }));
+        };
+        CLEAVE_RETURN_IF_ERROR(frames_.pass_by(position, name));
       }
       CLEAVE_ASSIGN_OR_RETURN(Frame frame, frames_.read(position));
       CLEAVE_RETURN_IF_ERROR(

@@ -39,9 +39,12 @@ TEST(RungsTest, WhatIsGivenIsNeverCoarserThanAskedNorFinerThanNeeded) {
     EXPECT_LE(choice->tolerance, asked);
     ASSERT_TRUE(choice->rung.has_value());
     EXPECT_EQ(choice->as_kept, choice->rung == Rung::kFine);
-    if (choice->rung != Rung::kPreview) EXPECT_GT(10.001 * choice->tolerance, asked);
-    if (!choice->as_kept)
+    if (choice->rung != Rung::kPreview) {
+      EXPECT_GT(10.001 * choice->tolerance, asked);
+    }
+    if (!choice->as_kept) {
       EXPECT_DOUBLE_EQ(ToleranceOfAnew(*choice->rung, kept) + kept.tolerance, choice->tolerance);
+    }
   }
 }
 

@@ -178,12 +178,16 @@ TEST_F(BakedSurfaceTest, ARenderMeshIsSplitOnceAndOpensWhereTheBodyCracks) {
       }
     }
     ASSERT_GT(pairs, 20u);
-    if (position < 2) EXPECT_EQ(open, 0u) << position;
+    if (position < 2) {
+      EXPECT_EQ(open, 0u) << position;
+    }
     if (position == 3) {  // cracked from below, and in one piece
       EXPECT_GT(open, 0u);
       EXPECT_LT(open, pairs);
     }
-    if (position == 5) EXPECT_EQ(open, pairs);
+    if (position == 5) {
+      EXPECT_EQ(open, pairs);
+    }
   }
 }
 

@@ -133,10 +133,13 @@ f 1/1 2/4 4/3
     for (size_t k = 0; k < 3; ++k) {
       const int32_t vertex = textured->triangles[i][k];
       const Vec3& at = textured->vertices[static_cast<size_t>(vertex)];
-      if (at == Vec3{1, 0, 0})
+      if (at == Vec3{1, 0, 0}) {
         EXPECT_EQ(textured->uvs[i][k],
                   (std::array<float, 2>{i == 0 ? 0.0f : 1.0f, i == 0 ? 0.25f : 1.0f}));
-      if (at == Vec3{0, 1, 0}) EXPECT_EQ(textured->uvs[i][k], (std::array<float, 2>{0.5f, 0}));
+      }
+      if (at == Vec3{0, 1, 0}) {
+        EXPECT_EQ(textured->uvs[i][k], (std::array<float, 2>{0.5f, 0}));
+      }
     }
   }
   EXPECT_TRUE(ParseSurfaceFile(kObj, "a.obj")->uvs.empty());  // its sides have none
