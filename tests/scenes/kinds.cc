@@ -107,7 +107,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
       {"struck_column",
        "A porcelain column, struck by a steel ball",
        "Fig. 9",
-       {"sheet", "voronoi", "plain"},
+       {"sheet", "voronoi", "plain", "sheet-shuffled", "voronoi-shuffled"},
        MakeStruckColumn,
        MeasureStruckColumn,
        StruckColumnCriteria(),
