@@ -158,6 +158,10 @@ std::vector<Criterion> BranchCriteria() {
        {{"length of splinters, diameters", Of("dry-iso", "splinter_length"), Relation::kAtLeast,
          0.5}},
        true},
+      {"Damp, what falls breaks into more pieces",
+       {"dry-fall", "damp-fall"},
+       {{"pieces, damp over dry", Ratio(Of("damp-fall", "pieces"), Of("dry-fall", "pieces")),
+         Relation::kAtLeast, 1.5}}},
       // Crumbs count: none of them has the share of the body that makes a piece.
       {"Damp, what falls crumbles",
        {"dry-fall", "damp-fall"},
