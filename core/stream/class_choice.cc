@@ -7,7 +7,7 @@
 namespace cleave {
 namespace {
 
-constexpr int32_t kMaxSamples = 384;  // places a group that are looked at
+constexpr size_t kMaxSamples = 384;  // places a group that are looked at
 // What going on may cost against the best class, since it is what later frames go on from too.
 constexpr float kPatience = 1.15f;
 constexpr float kPatienceBits = 48;
@@ -21,7 +21,7 @@ ClassChoice::ClassChoice() : bits_of_frequency_(kFrequencyOne + 1) {
   }
 }
 
-std::vector<uint8_t> ClassChoice::Choose(bool key, const NodeOrder& order, const Pieces& pieces,
+std::vector<uint8_t> ClassChoice::Choose(bool key, const InterpolationPredictor& predictor,
                                          const FrameMotion& motion,
                                          std::span<const Int32x4> residuals,
                                          std::span<const uint16_t> activities,
@@ -31,16 +31,19 @@ std::vector<uint8_t> ClassChoice::Choose(bool key, const NodeOrder& order, const
       bits_[c][symbol] = bits_of_frequency_[coder.Frequency(c, symbol)];
     }
   }
+  const NodeOrder& order = predictor.order();
   std::vector<uint8_t> classes;
   bool all_go_on = true;
   for (int64_t group = 0; group < order.groups(); ++group) {
     const int32_t begin = order.group_begins[static_cast<size_t>(group)];
     const int32_t end = order.group_begins[static_cast<size_t>(group) + 1];
-    const int32_t stride = key ? 1 : std::max(1, (end - begin) / kMaxSamples);
+    const std::span<const int32_t> places = predictor.PlacesWithin(begin, end - begin);
+    const size_t stride = key ? 1 : std::max<size_t>(1, places.size() / kMaxSamples);
     std::array<uint32_t, kMasks + kTokens> times{};
     float going_on = 0;
-    for (int32_t place = begin + stride / 2; place < end; place += stride) {
-      if (motion.Holds(pieces[place])) continue;
+    for (size_t at = stride / 2; at < places.size(); at += stride) {
+      const int32_t place = places[at];
+      if (motion.Holds(predictor.pieces()[place])) continue;
       const Int32x4 r = residuals[static_cast<size_t>(place)];
       const auto& of_place = bits_[key ? 0 : ClassOf(activities[static_cast<size_t>(place)])];
       const size_t mask = SignBits(r != 0) & 7;

@@ -8,8 +8,7 @@
 
 #include "core/base/int4.h"
 #include "core/stream/frame_motion.h"
-#include "core/stream/node_order.h"
-#include "core/stream/pieces.h"
+#include "core/stream/interpolation_predictor.h"
 #include "core/stream/residual_coder.h"
 #include "core/stream/residual_model.h"
 
@@ -24,7 +23,7 @@ class ClassChoice {
   // For each group the class with which its places begin, or kGoesOn if going on from `activities`
   // is about as short; in a key frame, `key`, a class for all. Empty if all go on. A choice by
   // what coder's frequencies make of a few hundred places a group, in a key frame of all.
-  std::vector<uint8_t> Choose(bool key, const NodeOrder& order, const Pieces& pieces,
+  std::vector<uint8_t> Choose(bool key, const InterpolationPredictor& predictor,
                               const FrameMotion& motion, std::span<const Int32x4> residuals,
                               std::span<const uint16_t> activities, const ResidualCoder& coder);
 

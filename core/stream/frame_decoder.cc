@@ -211,6 +211,7 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
   next.fragments = frame.fragments;
   size_t section = 0;
   CLEAVE_RETURN_IF_ERROR(DecodeTopology(parts, next, section));
+  absl::Status decoded;
   if (frame.kind == FrameKind::kHold) {
     if (!parts.sections.empty()) return absl::DataLossError("a hold frame has sections");
     next.positions = state_.positions;
@@ -218,13 +219,18 @@ absl::Status FrameDecoder::Apply(absl::string_view frame_bytes) {
     next.shifts = state_.shifts;
     next.residuals = state_.residuals;
   } else if (interpolation_.has_value()) {
-    CLEAVE_RETURN_IF_ERROR(
-        interpolation_->Decode(frame, std::span(parts.sections).subspan(section), state_, next));
+    decoded =
+        interpolation_->Decode(frame, std::span(parts.sections).subspan(section), state_, next);
   } else {
     CLEAVE_RETURN_IF_ERROR(DecodePositions(parts, section, next));
   }
-  if (HashStreamState(header_bytes_, next) != frame.state_hash) {
-    return absl::DataLossError(absl::StrCat("frame ", frame.frame, " fails its state hash"));
+  if (decoded.ok() && HashStreamState(header_bytes_, next) != frame.state_hash) {
+    decoded = absl::DataLossError(absl::StrCat("frame ", frame.frame, " fails its state hash"));
+  }
+  if (!decoded.ok()) {
+    if (interpolation_.has_value() && frame.kind != FrameKind::kHold)
+      interpolation_->Reject(state_);
+    return decoded;
   }
   Accept(next, frame);
   return absl::OkStatus();
@@ -278,6 +284,23 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
       }
     }
   });
+  if (header_.is_surface()) ShowVisible();
+}
+
+void FrameDecoder::ShowVisible() {
+  const Stencils& stencils = interpolation_->stencils();
+  const std::vector<int32_t>& nodes = interpolation_->order().nodes;
+  frame_.visible.assign(nodes.size(), 0);
+  for (size_t place = 0; place < nodes.size(); ++place) {
+    const auto node = static_cast<size_t>(nodes[place]);
+    const auto at = static_cast<int32_t>(place);
+    if (stencils.visible()->Has(at)) {
+      frame_.visible[node] = 1;
+    } else if (const int32_t leader = stencils.LeaderOf(stencils.pieces()[at]); leader >= 0) {
+      frame_.positions[node] =
+          frame_.positions[static_cast<size_t>(nodes[static_cast<size_t>(leader)])];
+    }
+  }
 }
 
 }  // namespace cleave

@@ -46,7 +46,7 @@ class FrameDecoder {
 
   const StreamHeader& header() const { return header_; }
   // The last applied frame; positions are origin + integer * step in doubles, with
-  // predictor 3 those that were encoded. Without one,
+  // predictor 3 those that were encoded. In a surface view it tells which nodes count. Without one,
   // frame().frame is -1.
   const Frame& frame() const { return frame_; }
   // Of each node, m: the largest error that its coordinates in frame() may have. More than the
@@ -67,6 +67,7 @@ class FrameDecoder {
   absl::Status DecodeChunk(const Section& section, const std::vector<int32_t>& rest,
                            std::vector<int32_t>& positions) const;
   void Accept(StreamState& next, const FrameHeader& frame);
+  void ShowVisible();
 
   StreamHeader header_;
   std::string header_bytes_;

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/faults.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/stream/exact_positions.h"
@@ -100,26 +99,7 @@ absl::Status FrameEncoder::SetTolerance(double tolerance) {
 }
 
 absl::Status FrameEncoder::SetRegion(std::optional<Region> region) {
-  if (region.has_value()) {
-    Faults faults;
-    if (!header_.has_regions()) faults.Error("region", "the stream has none");
-    if (!(region->outside_tolerance >= 2 * tolerance_ && region->outside_tolerance <= 1e9)) {
-      faults.Error("outside_tolerance", absl::StrCat(region->outside_tolerance, " is outside [",
-                                                     2 * tolerance_, ", 1e9]"));
-    }
-    for (size_t at = 0; at < region->nodes.size(); ++at) {
-      const int64_t node = region->nodes[at];
-      if (node >= 0 && node < static_cast<int64_t>(header_.node_count)) continue;
-      faults.Error(absl::StrCat("nodes[", at, "]"),
-                   absl::StrCat(node, " is outside [0, ", header_.node_count, ")"));
-    }
-    for (size_t axis = 0; region->box.has_value() && axis < 3; ++axis) {
-      const auto& [low, high] = *region->box;
-      if (low[axis] <= high[axis]) continue;
-      faults.Error("box", absl::StrCat("from ", low[axis], " to ", high[axis], " m has no inside"));
-    }
-    CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
-  }
+  if (region.has_value()) CLEAVE_RETURN_IF_ERROR(CheckRegion(*region, header_, tolerance_));
   region_ = std::move(region);
   PlaceRegion();
   return absl::OkStatus();
@@ -151,6 +131,9 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
     return absl::InvalidArgumentError(absl::StrCat("frame has ", frame.positions.size(),
                                                    " positions; the mesh has ", header_.node_count,
                                                    " nodes"));
+  }
+  if (!frame.visible.empty()) {
+    return absl::InvalidArgumentError("the positions of some nodes are not known");
   }
   const std::vector<int32_t>& edges = frame.broken_edges;
   if (goes_on && edges == state_.broken_edges) return absl::OkStatus();
@@ -336,10 +319,12 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     if (interpolation_.has_value()) return interpolation_->AllHold(state_);
     return exact() ? next_exact_ == state_.exact : next_ == state_.positions;
   };
-  const auto set_broken = [&] { interpolation_->SetBroken(frame.broken_edges, state_); };
-  if (header_.has_regions()) set_broken();  // what holds depends on the pieces
+  const auto set_broken = [&] { interpolation_->SetBroken(key, frame.broken_edges, state_); };
+  // What holds depends on the pieces, or on what is in view.
+  const bool ahead = header_.has_regions() || header_.is_surface();
+  if (ahead) set_broken();
   const bool holds = !key && !breaks && all_hold();
-  if (interpolation_.has_value() && !header_.has_regions() && !holds) set_broken();
+  if (interpolation_.has_value() && !ahead && !holds) set_broken();
   if (key) {
     header.kind = FrameKind::kKey;
     AppendCheckpoint(frame.broken_edges, header, body);

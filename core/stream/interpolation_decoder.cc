@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -19,8 +18,6 @@ namespace cleave {
 InterpolationDecoder::InterpolationDecoder(const StreamHeader& header, const StreamMesh& mesh)
     : header_(header), predictor_(header, mesh) {
   residuals_.resize(mesh.rest_positions.size());
-  all_places_.resize(mesh.rest_positions.size());
-  std::iota(all_places_.begin(), all_places_.end(), 0);
 }
 
 absl::Status InterpolationDecoder::DecodePlanes(const Section& section,
@@ -42,8 +39,9 @@ absl::Status InterpolationDecoder::DecodePlanes(const Section& section,
 }
 
 absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
-                                          std::span<const Section> sections,
-                                          const StreamState& state, StreamState& next) {
+                                          std::span<const Section> sections, StreamState& state,
+                                          StreamState& next) {
+  shown_.clear();
   const bool key = frame.kind == FrameKind::kKey;
   const uint64_t nodes = header_.node_count;
   const uint64_t chunk_nodes = header_.chunk_nodes;
@@ -52,7 +50,9 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
     return absl::DataLossError(absl::StrCat(
         "frame has ", sections.size(), " sections of motion and positions; it needs ", 1 + chunks));
   }
-  predictor_.Prepare(frame.tolerance, next.broken_edges, state.positions, state.previous, false);
+  predictor_.Prepare(key, frame.tolerance, next.broken_edges, state.positions, state.previous,
+                     false);
+  if (!key) shown_ = predictor_.stencils().fresh();
   const Pieces& pieces = predictor_.pieces();
   const bool rans = header_.coder_id == kCoderContextRans;
   CLEAVE_ASSIGN_OR_RETURN(
@@ -79,7 +79,8 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
             absl::StrCat("positions section ", index, " does not fit its frame"));
         continue;
       }
-      std::span<const int32_t> moving = std::span(all_places_).subspan(first, count);
+      std::span<const int32_t> moving =
+          predictor_.PlacesWithin(static_cast<int64_t>(first), static_cast<int64_t>(count));
       if (!motion.held.empty()) {
         some.clear();
         for (const int32_t place : moving) {
@@ -138,6 +139,18 @@ absl::Status InterpolationDecoder::Decode(const FrameHeader& frame,
   }
   return all_fit.load() ? absl::OkStatus()
                         : absl::DataLossError("a decoded coordinate is out of range");
+}
+
+void InterpolationDecoder::Reject(StreamState& state) {
+  // Elsewhere the next Decode brings everything to its own frame.
+  if (!header_.is_surface() || state.frame < 0) return;
+  for (const int32_t place : shown_) {
+    for (std::vector<int32_t>* positions : {&state.positions, &state.previous}) {
+      std::fill_n(positions->begin() + 3 * static_cast<std::ptrdiff_t>(place), 3, 0);
+    }
+  }
+  shown_.clear();
+  predictor_.Return(state.tolerance, state.broken_edges, state.positions, state.previous);
 }
 
 void InterpolationDecoder::Accept(FrameKind kind) {

@@ -20,10 +20,13 @@ class InterpolationDecoder {
   InterpolationDecoder(const StreamHeader& header, const StreamMesh& mesh);
 
   // Decodes the sections behind the topology of a key or delta frame that follows `state` into
-  // next.positions and next.residuals; next.broken_edges are the frame's. Error, after which any
-  // frame may be decoded that follows `state`: DataLoss.
+  // next.positions and next.residuals; next.broken_edges are the frame's. Places that it brings
+  // into view get a place in `state`. Error: DataLoss.
   absl::Status Decode(const FrameHeader& frame, std::span<const Section> sections,
-                      const StreamState& state, StreamState& next);
+                      StreamState& state, StreamState& next);
+
+  // The frame of the last Decode is not taken: any may follow that follows `state`.
+  void Reject(StreamState& state);
 
   // The frame that was decoded, or a hold, is now the last.
   void Accept(FrameKind kind);
@@ -36,7 +39,7 @@ class InterpolationDecoder {
 
   StreamHeader header_;
   InterpolationPredictor predictor_;
-  std::vector<int32_t> all_places_;
+  std::vector<int32_t> shown_;      // places that the last Decode gave a place in its state
   std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
 };
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
-#include <numeric>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
@@ -19,7 +18,7 @@ namespace cleave {
 namespace {
 
 constexpr int64_t kGrainNodes = 4096;
-constexpr int32_t kMaxSamples = 96;  // places a group that a continuation is fitted to
+constexpr size_t kMaxSamples = 96;  // places a group that a continuation is fitted to
 
 }  // namespace
 
@@ -27,8 +26,6 @@ InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const Str
     : header_(header), predictor_(header, mesh) {
   targets_.resize(mesh.rest_positions.size());
   residuals_.resize(mesh.rest_positions.size());
-  all_places_.resize(mesh.rest_positions.size());
-  std::iota(all_places_.begin(), all_places_.end(), 0);
   samples_.reserve(2 * kMaxSamples);
 }
 
@@ -179,9 +176,11 @@ Continuation InterpolationEncoder::Choose(int64_t group) {
   const NodeOrder& order = predictor_.order();
   const int32_t begin = order.group_begins[static_cast<size_t>(group)];
   const int32_t end = order.group_begins[static_cast<size_t>(group) + 1];
-  const int32_t stride = std::max(1, (end - begin) / kMaxSamples);
+  const std::span<const int32_t> places = predictor_.PlacesWithin(begin, end - begin);
+  const size_t stride = std::max<size_t>(1, places.size() / kMaxSamples);
   samples_.clear();
-  for (int32_t place = begin + stride / 2; place < end; place += stride) {
+  for (size_t at = stride / 2; at < places.size(); at += stride) {
+    const int32_t place = places[at];
     if (predictor_.stencils()[place].leads() || motion_.Holds(predictor_.pieces()[place])) continue;
     samples_.push_back({targets_[static_cast<size_t>(place)] - predictor_.Blend(place),
                         Widen(predictor_.LastDetail(place)), Widen(predictor_.DetailBefore(place)),
@@ -190,9 +189,21 @@ Continuation InterpolationEncoder::Choose(int64_t group) {
   return FitContinuation(samples_);
 }
 
-void InterpolationEncoder::SetBroken(std::span<const int32_t> broken, const StreamState& state) {
-  predictor_.Prepare(tolerance_, broken, state.positions, state.previous, history_is_new_);
+void InterpolationEncoder::SetBroken(bool key, std::span<const int32_t> broken,
+                                     StreamState& state) {
+  if (header_.is_surface() && history_is_new_ && state.frame >= 0) {
+    // What comes into view now does so after what the state has in view.
+    predictor_.Return(state.tolerance, state.broken_edges, state.positions, state.previous);
+    history_is_new_ = false;
+  }
+  predictor_.Prepare(key, tolerance_, broken, state.positions, state.previous, history_is_new_);
   history_is_new_ = false;
+  if (!header_.is_surface()) return;
+  // Hidden places are at 0 in every state, and so they stay there.
+  const VisiblePlaces& visible = *predictor_.stencils().visible();
+  for (size_t place = 0; place < targets_.size(); ++place) {
+    if (!visible.Has(static_cast<int32_t>(place))) targets_[place] = Double4{};
+  }
 }
 
 void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeader& header,
@@ -231,8 +242,8 @@ void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeade
   std::optional<ResidualCoder> coder;
   if (header_.coder_id == kCoderContextRans) {
     coder.emplace(state.residuals, key, ResidualCoder::Direction::kEncode);
-    motion_.classes = class_choice_.Choose(key, predictor_.order(), predictor_.pieces(), motion_,
-                                           residuals_, state.residuals.activities, *coder);
+    motion_.classes = class_choice_.Choose(key, predictor_, motion_, residuals_,
+                                           state.residuals.activities, *coder);
     BeginResiduals(key, predictor_.order(), motion_, state.residuals, next_history);
   }
   AppendMotion(key, motion_, predictor_.order().groups(), header, body);
@@ -254,9 +265,7 @@ void InterpolationEncoder::AppendPositions(const ResidualCoder* coder, FrameHead
       section.coded.clear();
       const int64_t first = index * chunk_nodes;
       std::span<const int32_t> moving =
-          std::span(all_places_)
-              .subspan(static_cast<size_t>(first),
-                       static_cast<size_t>(std::min(chunk_nodes, nodes - first)));
+          predictor_.PlacesWithin(first, std::min(chunk_nodes, nodes - first));
       if (!motion_.held.empty()) {
         chunk.moving.clear();
         for (const int32_t place : moving) {

@@ -45,11 +45,11 @@ class InterpolationEncoder {
   void ClearRegion() { region_.reset(); }
 
   // Brings stencils and pieces to the broken edges of the frame whose targets are set and that
-  // follows `state`.
-  void SetBroken(std::span<const int32_t> broken, const StreamState& state);
+  // follows `state`. Where that is no key frame, places that come into view get a place in `state`.
+  void SetBroken(bool key, std::span<const int32_t> broken, StreamState& state);
 
   // True if every node may stay where `state` has it, and as coarse. Precondition: no edge has
-  // broken since; in a stream with regions, SetBroken was called for the frame.
+  // broken since; in a surface view or a stream with regions, SetBroken was called for the frame.
   bool AllHold(const StreamState& state);
 
   // Appends the motion and positions sections of that frame, a key or delta, and gives the
@@ -93,7 +93,6 @@ class InterpolationEncoder {
   double tolerance_ = 0;            // m, of the targets
   std::vector<Double4> targets_;    // grid units, by place: x, y, z, 0
   std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
-  std::vector<int32_t> all_places_;
   std::vector<DetailSample> samples_;
   std::vector<Chunk> chunks_;
   FrameMotion motion_;

@@ -1,6 +1,8 @@
 #include "core/stream/interpolation_predictor.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -13,15 +15,58 @@ std::vector<Vec3> ByPlace(const NodeOrder& order, std::span<const Vec3> position
   return by_place;
 }
 
+int32_t Within(int64_t value) {
+  return static_cast<int32_t>(std::clamp(value, int64_t{-kMaxQuantised}, int64_t{kMaxQuantised}));
+}
+
 }  // namespace
 
 InterpolationPredictor::InterpolationPredictor(const StreamHeader& header, const StreamMesh& mesh)
     : order_(MakeNodeOrder(mesh.rest_positions)),
-      stencils_(order_, ByPlace(order_, mesh.rest_positions), mesh.edges),
+      stencils_(header.is_surface()
+                    ? Stencils(order_, ByPlace(order_, mesh.rest_positions), mesh)
+                    : Stencils(order_, ByPlace(order_, mesh.rest_positions), mesh.edges)),
       origin_(header.origin),
       domain_bound_(header.domain_bound) {
   for (std::vector<Int32x4>* lanes : {&positions_, &next_, &last_, &before_, &at_rest_}) {
     lanes->resize(mesh.rest_positions.size());
+  }
+  if (header.is_surface()) return;
+  all_places_.resize(mesh.rest_positions.size());
+  std::iota(all_places_.begin(), all_places_.end(), 0);
+}
+
+std::span<const int32_t> InterpolationPredictor::PlacesWithin(int64_t first, int64_t count) const {
+  const std::vector<int32_t>& all = places();
+  if (!stencils_.visible()) {
+    return std::span(all).subspan(static_cast<size_t>(first), static_cast<size_t>(count));
+  }
+  const auto begin = std::lower_bound(all.begin(), all.end(), first);
+  return {begin, std::lower_bound(begin, all.end(), first + count)};
+}
+
+// Where a place that has come into view was when nobody saw it, by how it lies among others at
+// rest.
+void InterpolationPredictor::MakeHistory(int32_t place, std::span<int32_t> positions) const {
+  const auto at = 3 * static_cast<size_t>(place);
+  if (!stencils_[place].leads()) {
+    const Int32x4 blend = ToInts(BlendOf(place, [&](int32_t of) {
+      return LoadInts(positions.data() + 3 * static_cast<size_t>(of));
+    }));
+    const Int32x4 detail = DetailIn(place, rest_);
+    for (int axis = 0; axis < 3; ++axis) {
+      positions[at + static_cast<size_t>(axis)] = Within(int64_t{blend[axis]} + detail[axis]);
+    }
+    return;
+  }
+  const int32_t neighbour = stencils_.KnownNeighbour(place);
+  for (size_t axis = 0; axis < 3; ++axis) {
+    int64_t moved = 0;
+    if (neighbour >= 0) {
+      const size_t known = 3 * static_cast<size_t>(neighbour) + axis;
+      moved = int64_t{positions[known]} - rest_[known];
+    }
+    positions[at + axis] = Within(rest_[at + axis] + moved);
   }
 }
 
@@ -43,23 +88,45 @@ void InterpolationPredictor::MakeDetails(int32_t place, std::span<const int32_t>
   before_[static_cast<size_t>(place)] = DetailIn(place, before);
 }
 
-void InterpolationPredictor::Prepare(double tolerance, std::span<const int32_t> broken,
-                                     std::span<const int32_t> last, std::span<const int32_t> before,
-                                     bool history_is_new) {
-  const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
-  const bool grid_is_new = tolerance != tolerance_;
-  if (grid_is_new) {
-    rest_ = QuantiseRest(stencils_.rest_positions(), origin_,
-                         QuantisationStep(tolerance, domain_bound_) / kUnitsPerStep);
-    tolerance_ = tolerance;
-  }
-  const bool all = history_is_new || grid_is_new;
-  const auto count = static_cast<int64_t>(all ? last_.size() : touched.size());
-  ParallelFor(count, 1024, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) {
-      MakeDetails(all ? static_cast<int32_t>(at) : touched[static_cast<size_t>(at)], last, before);
+void InterpolationPredictor::MakeDetails(const std::vector<int32_t>& places,
+                                         std::span<const int32_t> last,
+                                         std::span<const int32_t> before) {
+  ParallelFor(static_cast<int64_t>(places.size()), 1024, [&](int64_t begin, int64_t end) {
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      MakeDetails(places[at], last, before);
     }
   });
+}
+
+// True if it is another.
+bool InterpolationPredictor::SetGrid(double tolerance) {
+  if (tolerance == tolerance_) return false;
+  rest_ = QuantiseRest(stencils_.rest_positions(), origin_,
+                       QuantisationStep(tolerance, domain_bound_) / kUnitsPerStep);
+  tolerance_ = tolerance;
+  return true;
+}
+
+void InterpolationPredictor::Prepare(bool key, double tolerance, std::span<const int32_t> broken,
+                                     std::span<int32_t> last, std::span<int32_t> before,
+                                     bool history_is_new) {
+  const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
+  const bool grid_is_new = SetGrid(tolerance);
+  if (!key) {
+    for (const int32_t place : stencils_.fresh()) {
+      MakeHistory(place, last);
+      MakeHistory(place, before);
+    }
+  }
+  MakeDetails(history_is_new || grid_is_new ? places() : touched, last, before);
+}
+
+void InterpolationPredictor::Return(double tolerance, std::span<const int32_t> broken,
+                                    std::span<const int32_t> last,
+                                    std::span<const int32_t> before) {
+  stencils_.SetBroken(order_, broken);
+  SetGrid(tolerance);
+  MakeDetails(places(), last, before);
 }
 
 void InterpolationPredictor::Accept(bool key) {

@@ -1,6 +1,7 @@
 #ifndef CLEAVE_CORE_STREAM_INTERPOLATION_PREDICTOR_H_
 #define CLEAVE_CORE_STREAM_INTERPOLATION_PREDICTOR_H_
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -49,11 +50,21 @@ class InterpolationPredictor {
   const Pieces& pieces() const { return stencils_.pieces(); }
   const Stencils& stencils() const { return stencils_; }
 
+  // Places that frames carry, ascending; of those, the ones within [first, first + count).
+  const std::vector<int32_t>& places() const {
+    return stencils_.visible() ? stencils_.visible()->places() : all_places_;
+  }
+  std::span<const int32_t> PlacesWithin(int64_t first, int64_t count) const;
+
   // To this tolerance's grid, this set of broken edges and this history (positions of the last
   // frame and of the one before, by place; empty before the first frame). Without `history_is_new`
-  // it must be the history of the last call, or what Accept made of it.
-  void Prepare(double tolerance, std::span<const int32_t> broken, std::span<const int32_t> last,
-               std::span<const int32_t> before, bool history_is_new);
+  // it must be the history of the last call, or what Accept made of it. For a frame that is no key,
+  // places that only these edges make visible are given a history.
+  void Prepare(bool key, double tolerance, std::span<const int32_t> broken, std::span<int32_t> last,
+               std::span<int32_t> before, bool history_is_new);
+  // The same for a frame that was coded.
+  void Return(double tolerance, std::span<const int32_t> broken, std::span<const int32_t> last,
+              std::span<const int32_t> before);
 
   // Goes through the groups. What stands before one is decoded is what `choose(group)` may Blend,
   // and it gives how the group's details continue. Then for each of its places
@@ -94,10 +105,15 @@ class InterpolationPredictor {
     return Clamp(ToDoubles(ShiftRight<kStencilBits>(sum + kStencilOne / 2)));
   }
   Int32x4 DetailIn(int32_t place, std::span<const int32_t> positions) const;
+  bool SetGrid(double tolerance);
+  void MakeDetails(const std::vector<int32_t>& places, std::span<const int32_t> last,
+                   std::span<const int32_t> before);
+  void MakeHistory(int32_t place, std::span<int32_t> positions) const;
   void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);
 
   NodeOrder order_;
   Stencils stencils_;
+  std::vector<int32_t> all_places_;  // in the state view
   Vec3 origin_;
   double domain_bound_;
   double tolerance_ = 0;            // m, of rest_
@@ -122,7 +138,8 @@ void InterpolationPredictor::Run(bool key, std::span<const int32_t> last,
     put(place, Int32x4{from[0], from[1], from[2], 0});
     next_[static_cast<size_t>(place)] = last_[static_cast<size_t>(place)];
   };
-  const std::vector<int32_t>& leaders = pieces().leaders();
+  const std::vector<int32_t>& leaders = stencils_.leaders();
+  if (stencils_.visible()) std::fill(next.begin(), next.end(), 0);
   auto leader = leaders.begin();
   for (int64_t group = 0; group < order_.groups(); ++group) {
     const int32_t begin = order_.group_begins[static_cast<size_t>(group)];
@@ -146,24 +163,34 @@ void InterpolationPredictor::Run(bool key, std::span<const int32_t> last,
     const Double4 of_last = Splat(by.last);
     const Double4 of_before = Splat(by.before);
     const Double4 of_rest = Splat(by.rest);
-    ParallelFor(end - begin, 2048, [&](int64_t from, int64_t to) {
-      for (auto place = static_cast<int32_t>(begin + from); place < begin + to; ++place) {
-        if (stencils_[place].leads()) continue;
-        if (holds(place)) {
-          keep(place);
-          continue;
+    const auto run = [&](int64_t count, const auto& place_at) {
+      ParallelFor(count, 2048, [&](int64_t from, int64_t to) {
+        for (int64_t at = from; at < to; ++at) {
+          const int32_t place = place_at(at);
+          if (stencils_[place].leads()) continue;
+          if (holds(place)) {
+            keep(place);
+            continue;
+          }
+          const Double4 blend = Blend(place);
+          const Double4 detail = of_last * Widen(LastDetail(place)) +
+                                 of_before * Widen(DetailBefore(place)) +
+                                 of_rest * Widen(RestDetail(place));
+          const Double4 prediction =
+              Clamp(blend + Floor((detail + kContinuationOne / 2) * (1.0 / kContinuationOne)));
+          const Double4 position = correct(place, prediction);
+          put(place, ToInts(position));
+          next_[static_cast<size_t>(place)] = ToInts(position - blend);
         }
-        const Double4 blend = Blend(place);
-        const Double4 detail = of_last * Widen(LastDetail(place)) +
-                               of_before * Widen(DetailBefore(place)) +
-                               of_rest * Widen(RestDetail(place));
-        const Double4 prediction =
-            Clamp(blend + Floor((detail + kContinuationOne / 2) * (1.0 / kContinuationOne)));
-        const Double4 position = correct(place, prediction);
-        put(place, ToInts(position));
-        next_[static_cast<size_t>(place)] = ToInts(position - blend);
-      }
-    });
+      });
+    };
+    if (stencils_.visible()) {
+      const std::span<const int32_t> places = PlacesWithin(begin, end - begin);
+      run(static_cast<int64_t>(places.size()),
+          [&](int64_t at) { return places[static_cast<size_t>(at)]; });
+    } else {
+      run(end - begin, [&](int64_t at) { return static_cast<int32_t>(begin + at); });
+    }
   }
 }
 

@@ -37,6 +37,10 @@ SymbolRange RangeOf(const std::array<uint16_t, kSymbols>& frequencies, size_t sy
 
 PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
                          std::span<const std::array<int32_t, 2>> edges) {
+  if (unbroken.visible()) {
+    *this = PieceLabels(order, Stencils(order, unbroken.rest_positions(), edges), edges);
+    return;
+  }
   const size_t count = order.nodes.size();
   std::vector<int32_t> places(count);
   stencils_.resize(count);

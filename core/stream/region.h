@@ -6,7 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "core/base/vec3.h"
+#include "core/stream/stream_header.h"
 
 namespace cleave {
 
@@ -17,6 +19,10 @@ struct Region {
   std::optional<std::array<Vec3, 2>> box = std::nullopt;
   double outside_tolerance = 0;  // m, for the other pieces; at least twice that of the stream
 };
+
+// Error: InvalidArgument with all that keeps this from being the region of a stream whose pieces
+// inside have this tolerance (m).
+absl::Status CheckRegion(const Region& region, const StreamHeader& header, double tolerance);
 
 }  // namespace cleave
 

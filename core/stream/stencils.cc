@@ -47,9 +47,11 @@ class Candidates {
   std::array<int32_t, 256> places_;
 };
 
-// Offers the coarser places of the same piece in the 27 cubes around a place.
+// Offers the coarser visible places of the same piece in the 27 cubes around a place.
+template <typename IsVisible>
 void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coarser, uint64_t code,
-                 int bits, int32_t piece, const Pieces& pieces, Candidates& candidates) {
+                 int bits, int32_t piece, const Pieces& pieces, const IsVisible& is_visible,
+                 Candidates& candidates) {
   // Neighbouring cubes by arithmetic on each axis' bits in place.
   constexpr uint64_t kX = 0x1249249249249249u;
   const uint64_t inside = (uint64_t{1} << (3 * (21 - bits))) - 1;
@@ -74,7 +76,9 @@ void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coar
       }
     }
   }
-  const auto same_piece = [&](int32_t place) { return pieces[place] == piece; };
+  const auto same_piece = [&](int32_t place) {
+    return pieces[place] == piece && is_visible(place);
+  };
   for (size_t at = 0; at < count; ++at) {
     for (const NodeOrder::Coarse& found : index.In(cubes[at], coarser)) {
       __builtin_prefetch(pieces.labels().data() + found.place);
@@ -84,6 +88,9 @@ void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coar
   }
   candidates.Flush(same_piece);
 }
+
+// In the state view.
+constexpr auto kAllVisible = [](int32_t) { return true; };
 
 bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
   Int32x8 of_stencil;
@@ -96,8 +103,9 @@ bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
 }  // namespace
 
 Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
-                   std::span<const std::array<int32_t, 2>> edges)
-    : rest_(std::move(rest_by_place)), graph_(order, edges) {
+                   std::span<const std::array<int32_t, 2>> edges,
+                   std::optional<VisiblePlaces> visible)
+    : rest_(std::move(rest_by_place)), graph_(order, edges), visible_(std::move(visible)) {
   stencils_.resize(rest_.size());
   reaches_.resize(rest_.size());
   lost_edges_.assign(rest_.size(), 0);
@@ -110,13 +118,22 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
       if (bits <= 21) cubes_[group][size] = CubeIndex(order.coarser[group], bits);
     }
   }
-  touched_.resize(rest_.size());
-  std::iota(touched_.begin(), touched_.end(), 0);
+  TouchAll();
   Rebuild(order, touched_);
 }
 
+Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+                   std::span<const std::array<int32_t, 2>> edges)
+    : Stencils(order, std::move(rest_by_place), edges, std::nullopt) {}
+
+Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, const StreamMesh& mesh)
+    : Stencils(order, std::move(rest_by_place), mesh.edges,
+               VisiblePlaces(order, mesh.edges, mesh.tets)) {}
+
 // The places that a place is to be predicted from.
-void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest) {
+template <typename IsVisible>
+void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
+                      const IsVisible& is_visible) {
   const auto index = static_cast<size_t>(place);
   const size_t group = order.GroupOf(place);
   const int32_t coarse_end = order.group_begins[group];
@@ -127,7 +144,7 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest) {
   if (reach != Reach::kSpace) {
     for (const int32_t other : graph_.Neighbours(place)) {
       if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
-      candidates.Add(other, other >= 0);
+      candidates.Add(other, other >= 0 && is_visible(other));
     }
     candidates.Flush(any);
     nearest.Settle();
@@ -148,7 +165,7 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest) {
       for (const int32_t other : graph_.Neighbours(between)) {
         if (other >= coarse_end) break;
         int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
-        candidates.Add(other, other >= 0 && same != other);
+        candidates.Add(other, other >= 0 && same != other && is_visible(other));
         same = other;
       }
     }
@@ -162,17 +179,27 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest) {
       const int bits = order.cube_bits[group] + static_cast<int>(size);
       if (bits > 21) break;
       SearchCubes(cubes_[group][size], order.coarser[group], order.codes[index], bits,
-                  pieces_[place], pieces_, candidates);
+                  pieces_[place], pieces_, is_visible, candidates);
       nearest.Settle();
     }
   }
-  const int32_t leader = pieces_.leaders()[static_cast<size_t>(pieces_[place])];
+  const int32_t leader = LeaderOf(pieces_[place]);
   if (nearest.count() == 0 && leader != place) {
     nearest.Offer(leader, rest_[static_cast<size_t>(leader)], true);
   }
 }
 
 void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
+  if (visible_) {
+    Rebuild(order, places, [this](int32_t place) { return visible_->Has(place); });
+  } else {
+    Rebuild(order, places, kAllVisible);
+  }
+}
+
+template <typename IsVisible>
+void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
+                       const IsVisible& is_visible) {
   constexpr int64_t kLanes = 4;
   const auto rebuild_four = [&](std::span<const int32_t> some) {
     StencilBatch batch;
@@ -180,7 +207,7 @@ void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) 
       const auto index = static_cast<size_t>(some[lane]);
       const Vec3& centre = rest_[index];
       Nearest nearest(centre);
-      Search(order, some[lane], nearest);
+      Search(order, some[lane], nearest, is_visible);
       const size_t count = nearest.count();
       batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
       Stencil& stencil = stencils_[index];
@@ -263,17 +290,31 @@ void Stencils::TouchInSpace() {
   });
 }
 
+void Stencils::TouchAll() {
+  if (visible_) {
+    FindLeaders();
+    touched_ = visible_->places();
+  } else {
+    touched_.resize(rest_.size());
+    std::iota(touched_.begin(), touched_.end(), 0);
+  }
+}
+
 const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
                                                 std::span<const int32_t> broken) {
   touched_.clear();
+  fresh_.clear();
   if (std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end())) return touched_;
   if (!std::includes(broken.begin(), broken.end(), broken_.begin(), broken_.end())) {
     graph_.Heal();
     std::fill(reaches_.begin(), reaches_.end(), Reach::kOneEdge);
     for (const int32_t edge : broken) graph_.Break(edge);
     pieces_.Find(order, graph_);
-    touched_.resize(rest_.size());
-    std::iota(touched_.begin(), touched_.end(), 0);
+    if (visible_) {
+      visible_->Heal();
+      fresh_ = visible_->Break(graph_, broken);
+    }
+    TouchAll();
   } else {
     std::vector<int32_t> fresh;
     std::set_difference(broken.begin(), broken.end(), broken_.begin(), broken_.end(),
@@ -292,8 +333,14 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     });
     for (const int32_t end : ends) lost_edges_[static_cast<size_t>(end)] = 0;
     if (pieces_.Split(graph_, fresh)) TouchInSpace();
+    if (visible_) {
+      fresh_ = visible_->Break(graph_, fresh);
+      FindLeaders();
+      TouchRoundFresh();
+    }
     for (size_t place = 0; place < is_touched_.size(); ++place) {
-      if (is_touched_[place] != 0) touched_.push_back(static_cast<int32_t>(place));
+      const bool counts = !visible_ || visible_->Has(static_cast<int32_t>(place));
+      if (is_touched_[place] != 0 && counts) touched_.push_back(static_cast<int32_t>(place));
       is_touched_[place] = 0;
     }
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "core/stream/node_order.h"
 #include "core/stream/pieces.h"
 #include "core/stream/stencil_weights.h"
+#include "core/stream/stream_mesh.h"
+#include "core/stream/visible_places.h"
 
 namespace cleave {
 
@@ -27,12 +30,15 @@ struct alignas(64) Stencil {
   bool leads() const { return places[0] < 0; }
 };
 
-// The stencils of all places. They follow from the rest positions, the edges and the set of broken
-// edges alone, however that set came about. Loops run on the current TBB arena.
+// The stencils of all places, or of those that a surface view carries: then others are in none, and
+// have none. They follow from the mesh and the set of broken edges alone, however that set came
+// about. Loops run on the current TBB arena.
 class Stencils {
  public:
   Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
            std::span<const std::array<int32_t, 2>> edges);
+  // Of a surface view.
+  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, const StreamMesh& mesh);
 
   // Brings everything to this set of broken edges (ascending ids in range). Where edges only broke,
   // the work is in proportion to what they touch. Returns the places whose stencil was made anew,
@@ -41,15 +47,40 @@ class Stencils {
 
   const Stencil& operator[](int32_t place) const { return stencils_[static_cast<size_t>(place)]; }
   const Pieces& pieces() const { return pieces_; }
+  // The first visible place of each piece, ascending.
+  const std::vector<int32_t>& leaders() const { return visible_ ? leaders_ : pieces_.leaders(); }
+  // That of a piece; -1 if nothing of it is visible.
+  int32_t LeaderOf(int32_t piece) const {
+    return visible_ ? leader_of_[static_cast<size_t>(piece)]
+                    : pieces_.leaders()[static_cast<size_t>(piece)];
+  }
+  // Set in a surface view.
+  const std::optional<VisiblePlaces>& visible() const { return visible_; }
+  // Places that the last SetBroken made visible, ascending. Where edges are whole again, as if all
+  // had been, and then had broken.
+  const std::vector<int32_t>& fresh() const { return fresh_; }
+  // The lowest place that was visible before that SetBroken and shares an edge, whole or broken,
+  // with `place`; or -1.
+  int32_t KnownNeighbour(int32_t place) const;
   const std::vector<Vec3>& rest_positions() const { return rest_; }  // m, by place
   const std::vector<int32_t>& broken() const { return broken_; }
 
  private:
+  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+           std::span<const std::array<int32_t, 2>> edges, std::optional<VisiblePlaces> visible);
+
   // Where a stencil's places were found. What later breaks can change it depends on that.
   enum class Reach : uint8_t { kOneEdge, kTwoEdges, kSpace };
 
-  void Search(const NodeOrder& order, int32_t place, Nearest& nearest);
+  template <typename IsVisible>
+  void Search(const NodeOrder& order, int32_t place, Nearest& nearest, const IsVisible& is_visible);
+  template <typename IsVisible>
+  void Rebuild(const NodeOrder& order, std::span<const int32_t> places,
+               const IsVisible& is_visible);
   void Rebuild(const NodeOrder& order, std::span<const int32_t> places);
+  void FindLeaders();
+  void TouchRoundFresh();
+  void TouchAll();
   void Touch(int32_t place);
   void TouchAround(int32_t near);
   void TouchInSpace();
@@ -64,6 +95,11 @@ class Stencils {
   std::vector<uint8_t> lost_edges_;  // by place: 1 in a call that breaks some
   std::vector<uint8_t> is_touched_;
   std::vector<int32_t> touched_;
+  // In a surface view.
+  std::optional<VisiblePlaces> visible_;
+  std::vector<int32_t> fresh_;
+  std::vector<int32_t> leaders_;    // ascending
+  std::vector<int32_t> leader_of_;  // of each piece: its first visible place, or -1
 };
 
 }  // namespace cleave

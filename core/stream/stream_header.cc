@@ -36,7 +36,9 @@ bool IsKnown(const StreamHeader& header) {
   const bool interpolation =
       header.order_id == kOrderMortonLevel && header.predictor_id == kPredictorInterpolation;
   const bool exact = header.order_id == kOrderClient && header.predictor_id == kPredictorExact;
-  return header.view_id == kViewState && (interpolation || !header.has_regions()) &&
+  const bool view =
+      header.view_id == kViewState || (header.view_id == kViewSurface && interpolation);
+  return view && (interpolation || !header.has_regions()) &&
          (((temporal || exact) && header.coder_id == kCoderZstdPlanes) ||
           (interpolation &&
            (header.coder_id == kCoderZstdPlanes || header.coder_id == kCoderContextRans)));
@@ -64,6 +66,10 @@ void CheckValues(const StreamHeader& header, Faults& faults) {
     CheckRange("bbox_min", header.bbox_min[axis], -1e12, 1e12, faults);
     CheckRange("bbox_max", header.bbox_max[axis], header.bbox_min[axis], 1e12, faults);
     CheckRange("origin", header.origin[axis], header.bbox_min[axis], header.bbox_max[axis], faults);
+  }
+  if (header.view_id != kViewState &&
+      !(header.is_surface() && header.order_id == kOrderMortonLevel)) {
+    faults.Error("view_id", absl::StrCat(header.view_id, " is not 1, or 2 with predictor 2"));
   }
   if (header.has_regions() && header.predictor_id != kPredictorInterpolation) {
     faults.Error("regions", "only predictor 2 can code pieces apart");
@@ -112,23 +118,6 @@ absl::Status CheckTolerance(double tolerance, const StreamHeader& header) {
   return absl::OkStatus();
 }
 
-absl::Status CheckStreamMesh(const StreamHeader& header, const StreamMesh& mesh) {
-  if (mesh.rest_positions.size() != header.node_count ||
-      RestPositionsSha256(mesh.rest_positions) != header.rest_sha256) {
-    return absl::FailedPreconditionError("rest positions are not those of the stream's mesh");
-  }
-  if (header.predictor_id != kPredictorInterpolation) return absl::OkStatus();
-  bool fits = mesh.edges.size() == header.edge_count;
-  for (size_t edge = 0; fits && edge < mesh.edges.size(); ++edge) {
-    const std::array<int32_t, 2>& ends = mesh.edges[edge];
-    fits = ends[0] >= 0 && ends[0] < ends[1] &&
-           static_cast<uint64_t>(ends[1]) < header.node_count &&
-           (edge == 0 || mesh.edges[edge - 1] < ends);
-  }
-  return fits ? absl::OkStatus()
-              : absl::FailedPreconditionError("edges are not those of the stream's mesh");
-}
-
 std::string RestPositionsSha256(std::span<const Vec3> rest_positions) {
   static_assert(sizeof(Vec3) == 24);
   return Sha256::Of(absl::string_view(reinterpret_cast<const char*>(rest_positions.data()),
@@ -166,6 +155,7 @@ absl::StatusOr<StreamHeader> MakeStreamHeader(const StreamParameters& parameters
   header.tolerance = parameters.tolerance;
   header.predictor_id = parameters.predictor_id;
   header.coder_id = parameters.coder_id;
+  header.view_id = parameters.view_id;
   header.required_features = parameters.regions ? kFeatureRegions : 0;
   header.order_id =
       parameters.predictor_id == kPredictorInterpolation ? kOrderMortonLevel : kOrderClient;

@@ -25,6 +25,7 @@ inline constexpr uint16_t kPredictorExact = 3;          // as 1, to the bit; tol
 inline constexpr uint16_t kCoderZstdPlanes = 1;         // zstd over byte planes
 inline constexpr uint16_t kCoderContextRans = 2;        // residual_coder.h; needs predictor 2
 inline constexpr uint16_t kViewState = 1;               // every node and every broken edge
+inline constexpr uint16_t kViewSurface = 2;     // what surfaces are drawn from; needs predictor 2
 inline constexpr uint64_t kFeatureRegions = 1;  // some pieces may be coarser; needs predictor 2
 inline constexpr uint64_t kKnownRequiredFeatures = kFeatureRegions;
 
@@ -57,6 +58,7 @@ struct StreamHeader {
   double step() const;
   double diagonal() const;  // m, of the rest bounding box
   double UnitOf(double tolerance) const;
+  bool is_surface() const { return view_id == kViewSurface; }
   bool has_regions() const { return (required_features & kFeatureRegions) != 0; }
 };
 
@@ -72,6 +74,7 @@ struct StreamParameters {
   uint32_t chunk_nodes = 16384;     // [1, 65536]; 16384 keeps every section below 256 KiB
   uint16_t predictor_id = kPredictorTemporal;
   uint16_t coder_id = kCoderZstdPlanes;
+  uint16_t view_id = kViewState;
   bool regions = false;  // its encoder may be given a region of interest; needs predictor 2
 };
 

@@ -12,13 +12,16 @@ namespace cleave {
 
 // What a stream needs of its mesh. It is a view: what it is made from outlives it.
 struct StreamMesh {
-  StreamMesh(std::span<const Vec3> rest, std::span<const std::array<int32_t, 2>> mesh_edges = {})
-      : rest_positions(rest), edges(mesh_edges) {}
-  StreamMesh(const std::vector<Vec3>& rest, std::span<const std::array<int32_t, 2>> mesh_edges = {})
-      : rest_positions(rest), edges(mesh_edges) {}
+  StreamMesh(std::span<const Vec3> rest, std::span<const std::array<int32_t, 2>> mesh_edges = {},
+             std::span<const std::array<int32_t, 4>> mesh_tets = {})
+      : rest_positions(rest), edges(mesh_edges), tets(mesh_tets) {}
+  StreamMesh(const std::vector<Vec3>& rest, std::span<const std::array<int32_t, 2>> mesh_edges = {},
+             std::span<const std::array<int32_t, 4>> mesh_tets = {})
+      : rest_positions(rest), edges(mesh_edges), tets(mesh_tets) {}
 
   std::span<const Vec3> rest_positions;           // m, to the bit those of the stream
   std::span<const std::array<int32_t, 2>> edges;  // Incidence::edges; unused by predictor 1
+  std::span<const std::array<int32_t, 4>> tets;   // by node; only used by the surface view
 };
 
 }  // namespace cleave

@@ -32,14 +32,25 @@ Matrix3d EdgeMatrix(const std::array<int32_t, 4>& nodes, std::span<const Vec3> p
   return edges;
 }
 
+using Svd = Eigen::JacobiSVD<Matrix3d>;
+
 // With singular values outside of the allowed stretch moved to its ends.
 Matrix3d Clamped(const Matrix3d& gradient) {
-  const Eigen::JacobiSVD<Matrix3d> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Svd svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (svd.info() != Eigen::Success) return gradient;  // not finite
   const Vector3d values = svd.singularValues();
   if (values.minCoeff() >= kMinStretch && values.maxCoeff() <= kMaxStretch) return gradient;
   return svd.matrixU() * values.cwiseMax(kMinStretch).cwiseMin(kMaxStretch).asDiagonal() *
          svd.matrixV().transpose();
+}
+
+// The nearest rotation.
+Matrix3d Turn(const Matrix3d& gradient) {
+  const Svd svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.info() != Eigen::Success) return Matrix3d::Identity();  // not finite
+  Matrix3d u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
 }
 
 // The volume-weighted mean deformation gradient of some tets, without those whose vertices are
@@ -60,7 +71,7 @@ std::optional<Matrix3d> MeanGradient(const TetMesh& mesh, std::span<const int32_
     six_volumes += cofactor.col(0).dot(rest.col(0));
   }
   if (!(six_volumes > 0)) return std::nullopt;
-  return Clamped(sum / six_volumes);
+  return sum / six_volumes;
 }
 
 }  // namespace
@@ -68,7 +79,6 @@ std::optional<Matrix3d> MeanGradient(const TetMesh& mesh, std::span<const int32_
 PointMotion::PointMotion(const TetMesh& mesh, const Incidence& incidence)
     : mesh_(mesh),
       incidence_(incidence),
-      previous_positions_(mesh.rest_positions),
       gradients_(mesh.rest_positions.size()),
       has_gradient_(mesh.rest_positions.size(), 0) {}
 
@@ -88,7 +98,12 @@ void PointMotion::UpdateGradients(const SurfaceTopology& surface, std::span<cons
       const std::span<const int32_t> tets = incidence_.node_tets[node];
       std::optional<Matrix3d> mean = MeanGradient(mesh_, tets, surface.tet_masks, positions);
       uint8_t& has_gradient = has_gradient_[static_cast<size_t>(node)];
-      if (!mean && has_gradient == 0) mean = MeanGradient(mesh_, tets, {}, previous_positions_);
+      if (mean) {
+        mean = Clamped(*mean);
+      } else if (has_gradient == 0) {
+        mean = MeanGradient(mesh_, tets, {}, positions);
+        if (mean) mean = Turn(*mean);
+      }
       if (!mean) continue;
       Eigen::Map<Matrix3d>(gradients_[static_cast<size_t>(node)].data()) = *mean;
       has_gradient = 1;
@@ -122,7 +137,6 @@ void PointMotion::Move(const SurfaceTopology& surface, std::span<const Vec3> pos
       moved /= owners;
     }
   });
-  previous_positions_.assign(positions.begin(), positions.end());
 }
 
 }  // namespace cleave

@@ -20,8 +20,11 @@ namespace cleave {
 // volume-weighted mean deformation gradient of the live tets at v, its singular values held within
 // [0.2, 5] because a crack's neighbours may be badly distorted. (The split tet's own gradient tells
 // how far the pieces are apart, not how they are deformed.) A node that has lost its last live tet
-// keeps the last F_v that it had, or the one of the previous call's positions. Source: method note,
-// section 8.
+// keeps the last F_v that it had; one that had none, since all of its tets came apart at once, is
+// undeformed and turned as they are on the mean. Source: method note, section 8.
+//
+// It reads the nodes of the boundary, those of separated tets and whatever shares a tet with these:
+// what a surface view carries (core/stream/FORMAT.md, 7.5).
 //
 // Not thread-safe; loops run on the caller's TBB arena.
 class PointMotion {
@@ -42,10 +45,9 @@ class PointMotion {
 
   const TetMesh& mesh_;
   const Incidence& incidence_;
-  std::vector<Vec3> previous_positions_;  // m, a node each; at rest before the first call
-  std::vector<Gradient> gradients_;       // a node each
-  std::vector<uint8_t> has_gradient_;     // a node each
-  std::vector<int32_t> owner_nodes_;      // scratch
+  std::vector<Gradient> gradients_;    // a node each
+  std::vector<uint8_t> has_gradient_;  // a node each
+  std::vector<int32_t> owner_nodes_;   // scratch
 };
 
 }  // namespace cleave

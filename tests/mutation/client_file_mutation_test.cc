@@ -117,11 +117,13 @@ TEST(FileMutation, DamagedRecordingsAreRefusedOrReadAndCarriedOn) {
     std::vector<std::array<int32_t, 2>> edges;
     if (golden.predictor_id == kPredictorInterpolation)
       edges = LoadAll<std::array<int32_t, 2>>(base + ".edges");
+    std::vector<std::array<int32_t, 4>> tets;
+    if (golden.surface) tets = LoadAll<std::array<int32_t, 4>>(base + ".tets");
     for (uint64_t round = 0; round < kRounds; ++round) {
       SCOPED_TRACE(absl::StrCat(golden.name, " ", round));
       Dice dice(round);
       WriteBytes(path, MutateBytes(bytes, dice));
-      const auto recording = OpenRecording(path, {rest, edges});
+      const auto recording = OpenRecording(path, {rest, edges, tets});
       if (recording.ok()) {
         for (int64_t at = 0; at < recording->frames.count; ++at) {
           const auto frame = recording->frames.read(at);

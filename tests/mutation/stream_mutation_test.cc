@@ -44,6 +44,9 @@ struct Corpus {
     if (golden.interpolates()) {
       edges = LoadAll<std::array<int32_t, 2>>(std::string(golden.name) + ".edges");
     }
+    if (golden.surface) {
+      tets = LoadAll<std::array<int32_t, 4>>(std::string(golden.name) + ".tets");
+    }
     const BufferAccess file(bytes);
     const auto reader = StreamFileReader::Open(file);
     EXPECT_TRUE(reader.ok()) << reader.status();
@@ -52,11 +55,12 @@ struct Corpus {
     rows = reader->rows();
     for (size_t at = 0; at < rows.size(); ++at) frames.push_back(*reader->ReadFrame(at));
   }
-  StreamMesh mesh() const { return {rest, edges}; }
+  StreamMesh mesh() const { return {rest, edges, tets}; }
 
   std::string bytes;
   std::vector<Vec3> rest;
   std::vector<std::array<int32_t, 2>> edges;
+  std::vector<std::array<int32_t, 4>> tets;
   std::string header;
   uint64_t frames_end = 0;
   std::vector<IndexRow> rows;

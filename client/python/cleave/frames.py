@@ -10,7 +10,7 @@ from cleave.interpolation import UNITS_PER_STEP
 
 KEY, DELTA, HOLD = 1, 2, 3
 TOPOLOGY_DELTA, TOPOLOGY_CHECKPOINT, POSITIONS, MOTION, LABELS = 1, 2, 3, 4, 5
-_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1), (1, 3, 1, 1))  # order, predictor, coder, view
+_KNOWN_IDS = ((1, 1, 1, 1), (2, 2, 1, 1), (2, 2, 2, 1), (1, 3, 1, 1), (2, 2, 1, 2), (2, 2, 2, 2))  # order, predictor, coder, view
 
 _REGIONS = 1  # required feature
 
@@ -42,6 +42,7 @@ class StreamHeader:
     tets: int
     predictor: int
     coder: int
+    view: int
     chunk_nodes: int
     keyframe_interval: int
     tolerance: float
@@ -93,7 +94,7 @@ class StreamHeader:
             raise UnsupportedError(f"order, predictor, coder, view are {ids}: not known together")
         header = cls(
             *values[7:12],
-            *ids[1:3],
+            *ids[1:4],
             *values[16:21],
             values[21:24],
             values[24:27],

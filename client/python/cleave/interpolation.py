@@ -1,17 +1,14 @@
-"""Predictor 2 of Cleave's frame streams: core/stream/FORMAT.md sections 6.4, 6.5 and 7.
+"""Predictor 2 of Cleave's frame streams: core/stream/FORMAT.md sections 6.5 and 7.
 
 Arrays of coordinates are (places, 3) int64 in the order of places.
 """
 
-import struct
-
 import numpy as np
 
-from cleave.residuals import CLASSES, GOES_ON
+from cleave.visible import VisiblePlaces
 
 MAX_QUANTISED = 2**30 - 1
 UNITS_PER_STEP = 64
-MAX_SHIFT = 20
 
 _STENCIL = 8
 _ENOUGH_NEAR = 7
@@ -62,10 +59,11 @@ class NodeOrder:
 
 
 class Stencils:
-    """Sections 7.2 to 7.4: pieces, stencils and weights of one set of broken edges, at first of
-    none. ends: the places of each edge."""
+    """Sections 7.2 to 7.5: pieces, stencils and weights of one set of broken edges, at first of
+    none. ends: the places of each edge; visible: whether each place is, all but with tets, which a
+    surface view has."""
 
-    def __init__(self, order, rest, edges):
+    def __init__(self, order, rest, edges, tets=None):
         self._order = order
         self._rest = rest[order.nodes]
         place = np.empty(len(rest), int)
@@ -75,6 +73,10 @@ class Stencils:
         self.weights = np.zeros((len(rest), _STENCIL), "i8")
         self._in_space = np.ones(len(rest), bool)
         self._broken = None
+        self.visible = np.ones(len(rest), bool)
+        self._all_visible = None
+        if tets is not None:
+            self._all_visible = VisiblePlaces(len(rest), self.ends, place[np.asarray(tets, int)])
         self.set_broken(np.empty(0, int))
 
     def set_broken(self, broken):
@@ -89,16 +91,20 @@ class Stencils:
         both = both[np.lexsort((both[:, 1], both[:, 0]))]
         self._neighbours = both[:, 1]
         self._offsets = np.searchsorted(both[:, 0], np.arange(count + 1))
+        visible = self.visible
+        if self._all_visible is not None:
+            self.visible = self._all_visible.of(broken)
         self._find_pieces(ends)
-        if self._broken is not None and np.isin(self._broken, broken).all():
+        grows = not np.array_equal(visible, self.visible)  # then any stencil may change
+        if not grows and self._broken is not None and np.isin(self._broken, broken).all():
             # A superset of those that can change: around the breaks, and what was found in space.
             near = np.unique(self.ends[np.setdiff1d(broken, self._broken)])
             touched = self._in_space.copy()
             touched[near] = True
             touched[self._expand(near)[1]] = True
-            touched = np.flatnonzero(touched)
+            touched = np.flatnonzero(touched & self.visible)
         else:
-            touched = np.arange(count)
+            touched = np.flatnonzero(self.visible)
         for at in range(0, len(touched), _BATCH):
             self._rebuild(touched[at : at + _BATCH])
         self._broken = np.array(broken)
@@ -108,6 +114,24 @@ class Stencils:
         """The blends of these places, none of which leads."""
         sums = np.einsum("ij,ijk->ik", self.weights[at], positions[self.places[at]])
         return np.clip((sums + 16384) >> 15, -MAX_QUANTISED, MAX_QUANTISED)
+
+    def fill(self, fresh, positions, rest):
+        """Section 6.5: where places that have come into view were in a frame without them."""
+        group = self._order.group
+        known = self.visible.copy()
+        known[fresh] = False
+        for at in np.split(fresh, np.flatnonzero(np.diff(group[fresh])) + 1):
+            leads = self.places[at, 0] < 0
+            for leader in at[leads]:
+                one, other = self.ends[(self.ends == leader).any(axis=1)].T
+                near = np.where(one == leader, other, one)
+                near = near[known[near]]
+                moved = positions[near.min()] - rest[near.min()] if len(near) > 0 else 0
+                positions[leader] = np.clip(rest[leader] + moved, -MAX_QUANTISED, MAX_QUANTISED)
+            at = at[~leads]
+            detail = rest[at] - self.blend(at, rest)
+            filled = self.blend(at, positions) + detail
+            positions[at] = np.clip(filled, -MAX_QUANTISED, MAX_QUANTISED)
 
     def _find_pieces(self, ends):
         leader = np.arange(len(self._rest))
@@ -121,8 +145,13 @@ class Stencils:
             if np.array_equal(new, leader):
                 break
             leader = new
-        self._leader = leader
         self.leaders, self.piece = np.unique(leader, return_inverse=True)
+        if self._all_visible is not None:
+            seen = np.flatnonzero(self.visible)
+            pieces, first = np.unique(self.piece[seen], return_index=True)
+            self.leaders = np.full(len(self.leaders), -1)
+            self.leaders[pieces] = seen[first]
+        self._leader = self.leaders[self.piece]
 
     def _expand(self, at):
         """Pairs (position in `at`, place that an unbroken edge joins to it)."""
@@ -135,7 +164,7 @@ class Stencils:
         coarse_end = self._order.begins[self._order.group[at]]
 
         def coarser(owners, others):
-            keep = others < coarse_end[owners]
+            keep = (others < coarse_end[owners]) & self.visible[others]
             return owners[keep], others[keep]
 
         owners, others = self._expand(at)
@@ -178,7 +207,7 @@ class Stencils:
                 owner = np.repeat(mine[inside], sizes)
                 within = np.arange(len(owner)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
                 other = sorting[np.repeat(first, sizes) + within]
-                same = self.piece[other] == self.piece[at[owner]]
+                same = (self.piece[other] == self.piece[at[owner]]) & self.visible[other]
                 owners.append(owner[same])
                 others.append(other[same])
         return np.concatenate(owners), np.concatenate(others)
@@ -259,73 +288,12 @@ def _weights(there, offsets, squares):
     return weights
 
 
-class Motion:
-    """Section 6.4. holds: whether each piece does; shifts: by how many powers of two each piece is
-    coarser; continuations: (a, b, c) of each group; classes: of each group, with coder 2, or None."""
-
-    _NAMED = ((64, 0, 0), (128, -64, 0), (96, -32, 0), (0, 0, 64))
-
-    def __init__(self, raw, key, rans, regions, pieces, groups):
-        """Raises ValueError for bytes that are not a motion."""
-        self.holds = np.zeros(pieces, bool)
-        self.shifts = np.zeros(pieces, "i8")
-        self.continuations = [self._NAMED[3]] * groups
-        at = 1
-        if not raw or raw[0] > (7 if regions else 3) or (key and raw[0] & 1):
-            raise ValueError("motion section has values out of range")
-        if raw[0] & 1:
-            self.holds = _bits(raw, at, pieces)
-            at += (pieces + 7) // 8
-        if raw[0] & 4:
-            if at >= len(raw) or not 1 <= raw[at] <= MAX_SHIFT:
-                raise ValueError("motion section has values out of range")
-            self.shifts = raw[at] * _bits(raw, at + 1, pieces).astype("i8")
-            at += 1 + (pieces + 7) // 8
-        if not key:
-            self.continuations = []
-            for _ in range(groups):
-                choice = raw[at] if at < len(raw) else 255
-                at += 1
-                if choice < 4:
-                    self.continuations.append(self._NAMED[choice])
-                    continue
-                if choice != 4 or at + 6 > len(raw):
-                    raise ValueError("motion section has values out of range")
-                listed = struct.unpack_from("<hhh", raw, at)
-                if max(map(abs, listed)) > 256:
-                    raise ValueError("motion section has values out of range")
-                self.continuations.append(listed)
-                at += 6
-        self.classes = None
-        has_classes = raw[0] & 2 != 0
-        if has_classes != rans and (key or has_classes):
-            raise ValueError("motion section has values out of range")
-        if has_classes:
-            self.classes = np.frombuffer(raw[at : at + groups], "u1")
-            known = (self.classes < CLASSES) | (not key and self.classes == GOES_ON)
-            if len(self.classes) != groups or not known.all():
-                raise ValueError("motion section has values out of range")
-            at += groups
-        if at != len(raw):
-            raise ValueError("motion section is longer than its groups")
-
-
-def _bits(raw, at, pieces):
-    size = (pieces + 7) // 8
-    if len(raw) < at + size:
-        raise ValueError("motion section is truncated")
-    bits = np.unpackbits(np.frombuffer(raw, "u1", size, at), bitorder="little")
-    if bits[pieces:].any():
-        raise ValueError("motion section has values out of range")
-    return bits[:pieces].astype(bool)
-
-
 class Predictor:
     """Section 6.5. Holds the stencils of one mesh; a state's arrays are given to each call."""
 
-    def __init__(self, rest, edges):
+    def __init__(self, rest, edges, tets=None):
         self.order = NodeOrder(rest)
-        self.stencils = Stencils(self.order, rest, edges)
+        self.stencils = Stencils(self.order, rest, edges, tets)
 
     def decode(self, key, motion, residuals, rest, last, before):
         """Positions of a frame from residuals of all places (0 where pieces hold) and q of rest, of
@@ -335,7 +303,7 @@ class Predictor:
         q = np.zeros((len(rest), 3), "i8")
         held = motion.holds[stencils.piece]
         leads = stencils.places[:, 0] < 0
-        start = np.flatnonzero(leads)
+        start = np.flatnonzero(leads & stencils.visible)
         ahead = (
             rest
             if key
@@ -346,7 +314,7 @@ class Predictor:
             q[start] = np.where(held[start, None], last[start], q[start])
         for group, (a, b, c) in enumerate(motion.continuations):
             at = np.arange(begins[group], begins[group + 1])
-            at = at[~leads[at]]
+            at = at[~leads[at] & stencils.visible[at]]
             blend = stencils.blend(at, q)
             ahead = c * (rest[at] - stencils.blend(at, rest))
             if a != 0:

@@ -33,8 +33,9 @@ from cleave.frames import (
     WrongStateError,
     split_frame,
 )
-from cleave.interpolation import MAX_QUANTISED, Motion, Predictor
+from cleave.interpolation import MAX_QUANTISED, Predictor
 from cleave.labels import PieceLabels
+from cleave.motion import Motion
 from cleave.residuals import ResidualHistory
 from cleave.sections import decode_parts, edges_of_gaps, residuals_of_planes
 from cleave.stream_file import IndexRow, StreamFile
@@ -63,10 +64,11 @@ class FrameDecoder:
     After each apply: frame, epoch, time (s), fragments, positions (nodes x 3 float64, m),
     broken_edges (ascending int32) and state_hash are of that frame; and tolerances (m, a node each):
     the largest errors of positions, more than the frame's tolerance only outside of a region of
-    interest.
+    interest. In a surface view, for which it needs tets, visible tells which nodes' positions are known
+    (others are given that of a node of their piece); else it is None.
     """
 
-    def __init__(self, header_bytes, rest_positions, edges=None, max_nodes=64_000_000):
+    def __init__(self, header_bytes, rest_positions, edges=None, max_nodes=64_000_000, tets=None):
         self.header = StreamHeader.parse(bytes(header_bytes))
         if self.header.nodes > max_nodes:
             raise StreamError(f"stream of {self.header.nodes} nodes is above {max_nodes}")
@@ -81,15 +83,22 @@ class FrameDecoder:
         self._predictor = None
         if self.header.predictor == 2:
             edges = _checked_edges(edges, self.header)
-            self._predictor = Predictor(rest, edges)
+            tets = _checked_tets(tets, self.header) if self.header.view == 2 else None
+            try:
+                self._predictor = Predictor(rest, edges, tets)
+            except ValueError as error:
+                raise WrongStateError(f"tets are not those of the stream's mesh: {error}") from None
             self._rest = rest[self._predictor.order.nodes]
-            self._labels = PieceLabels(self._predictor)
+            whole = self._predictor if tets is None else Predictor(rest, edges)
+            self._labels = PieceLabels(whole)
         self._history = ResidualHistory(self.header.nodes)
         self._previous = None
         self._quantised = None
         self._tolerance = None
         self._shifts = np.zeros(self.header.nodes if self.header.regions else 0, "u1")
         self.tolerances = None
+        self.visible = None
+        self._visible = None  # by place
         self.frame = -1
         self.epoch = 0
         self.time = 0.0
@@ -107,19 +116,19 @@ class FrameDecoder:
             raise DamagedError("topology sections stand behind others")
         others = sections[len(topology) :]
         broken = self._decode_topology(header, topology)
-        history, shifts = self._history, self._shifts
+        history, shifts, last = self._history, self._shifts, self._quantised
         if header.kind == HOLD:
             if sections:
                 raise DamagedError("a hold frame has sections")
             quantised = self._quantised
         elif self._predictor is not None:
-            quantised, history, shifts = self._interpolate(header, others, broken)
+            quantised, history, shifts, last = self._interpolate(header, others, broken)
         else:
             quantised = self._decode_positions(header, others)
         if header.state_hash != self._hash(header, quantised, broken, shifts):
             raise DamagedError(f"frame {header.frame} fails its state hash")
 
-        self._previous = self._quantised
+        self._previous = last
         if header.kind == KEY:
             self._previous = None if self._predictor is None else quantised
         self._quantised = quantised
@@ -140,11 +149,24 @@ class FrameDecoder:
         positions = np.asarray(self.header.origin) + quantised.astype("f8") * unit
         if self._predictor is not None:
             by_place, positions = positions, np.empty_like(positions)
+            if self.header.view == 2:
+                by_place = self._show(by_place)
             positions[self._predictor.order.nodes] = by_place
         if self.header.regions:
             self.tolerances[self._predictor.order.nodes] *= 2.0**shifts
         self.positions = positions
         return header
+
+    def _show(self, by_place):
+        stencils, nodes = self._predictor.stencils, self._predictor.order.nodes
+        stencils.set_broken(self.broken_edges)  # in a hold, after a frame that was refused
+        self._visible = stencils.visible
+        self.visible = np.empty(len(nodes), bool)
+        self.visible[nodes] = self._visible
+        leader = stencils.leaders[stencils.piece]
+        hidden = ~self._visible & (leader >= 0)
+        by_place[hidden] = by_place[leader[hidden]]
+        return by_place
 
     def _check_base(self, header):
         if header.broken_edges > self.header.edges:
@@ -274,7 +296,7 @@ class FrameDecoder:
         if self.header.coder == 2:
             history = history.begin(key, motion.classes, self._predictor.order.group)
 
-        moving = ~motion.holds[stencils.piece]
+        moving = ~motion.holds[stencils.piece] & stencils.visible
         residuals = np.zeros((nodes, 3), "i8")
         for index, chunk in enumerate(sections[1:]):
             first = index * chunk_nodes
@@ -298,18 +320,19 @@ class FrameDecoder:
                 residuals[coded] = residuals_of_planes(chunk, planes, len(coded))
         before = None if self._previous is None else self._previous.astype("i8")
         last = None if self._quantised is None else self._quantised.astype("i8")
-        q = self._predictor.decode(
-            key,
-            motion,
-            residuals,
-            self._quantised_rest(header).astype("i8"),
-            last,
-            before,
-        )
+        rest = self._quantised_rest(header).astype("i8")
+        if self.header.view == 2 and not key:
+            fresh = np.flatnonzero(stencils.visible & ~self._visible)
+            last, before = last.copy(), before.copy()
+            if len(fresh) > 0:
+                stencils.fill(fresh, last, rest)
+                stencils.fill(fresh, before, rest)
+        q = self._predictor.decode(key, motion, residuals, rest, last, before)
         if np.abs(q).max() > MAX_QUANTISED:
             raise DamagedError("a decoded coordinate is out of range")
         shifts = motion.shifts[stencils.piece].astype("u1") if self.header.regions else self._shifts
-        return q.astype("<i4"), history.finish() if self.header.coder == 2 else history, shifts
+        base = self._quantised if last is None else last.astype("<i4")
+        return q.astype("<i4"), history.finish() if self.header.coder == 2 else history, shifts, base
 
     def _hash(self, header, quantised, broken, shifts):
         fields = struct.pack(
@@ -341,6 +364,13 @@ def edges_of(tets):
     corners = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
     pairs = np.concatenate([tets[:, pair] for pair in corners])
     return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def _checked_tets(tets, header):
+    tets = np.empty((0, 4), "i8") if tets is None else np.asarray(tets, "i8").reshape(-1, 4)
+    if len(tets) != header.tets or tets.min(initial=0) < 0 or tets.max(initial=0) >= header.nodes:
+        raise WrongStateError("tets are not those of the stream's mesh")
+    return tets
 
 
 def _checked_edges(edges, header):

@@ -67,7 +67,7 @@ struct Cost {
 };
 
 StreamParameters ParametersOf(const Sequence& sequence, double tolerance, uint16_t predictor,
-                              uint16_t coder) {
+                              uint16_t coder, uint16_t view = kViewState) {
   StreamParameters parameters;
   parameters.mesh_sha256 = std::string(32, 'm');
   parameters.edge_count = sequence.incidence->edges.size();
@@ -75,15 +75,17 @@ StreamParameters ParametersOf(const Sequence& sequence, double tolerance, uint16
   parameters.tolerance = tolerance;
   parameters.predictor_id = predictor;
   parameters.coder_id = coder;
+  parameters.view_id = view;
   return parameters;
 }
 
 // The frame stream itself, all frames; then its phases.
 void MeasureStream(const Sequence& sequence, double tolerance, uint16_t predictor, uint16_t coder,
-                   const char* name) {
-  const StreamMesh mesh(sequence.mesh->rest_positions, sequence.incidence->edges);
-  const auto header =
-      MakeStreamHeader(ParametersOf(sequence, tolerance, predictor, coder), mesh.rest_positions);
+                   const char* name, uint16_t view = kViewState) {
+  const StreamMesh mesh(sequence.mesh->rest_positions, sequence.incidence->edges,
+                        sequence.mesh->tets);
+  const auto header = MakeStreamHeader(ParametersOf(sequence, tolerance, predictor, coder, view),
+                                       mesh.rest_positions);
   auto encoder = FrameEncoder::Create(*header, mesh);
   auto decoder = FrameDecoder::Create(encoder->header_bytes(), mesh);
   Cost all;
@@ -111,7 +113,9 @@ void MeasureStream(const Sequence& sequence, double tolerance, uint16_t predicto
       cost->decode_seconds += end - between;
       ++cost->frames;
     }
+    const std::vector<uint8_t>& visible = decoder->frame().visible;
     for (size_t node = 0; node < frame.positions.size(); ++node) {
+      if (!visible.empty() && visible[node] == 0) continue;
       for (size_t axis = 0; axis < 3; ++axis) {
         worst = std::max(
             worst, std::abs(frame.positions[node][axis] - decoder->frame().positions[node][axis]));
@@ -124,7 +128,8 @@ void MeasureStream(const Sequence& sequence, double tolerance, uint16_t predicto
     keys.Print("  its key frames", nodes);
     if (breaking.frames > 0) breaking.Print("  its frames with fracture", nodes);
     others.Print("  its other frames", nodes);
-    std::printf("    worst error %.5f of the tolerance\n", worst / tolerance);
+    std::printf("    %.0f bytes a frame, worst error %.5f of the tolerance\n",
+                all.bytes / static_cast<double>(all.frames), worst / tolerance);
   }
 }
 
@@ -165,6 +170,8 @@ void Compare(const Sequence& sequence) {
                   "stream, predictor 2, zstd");
     MeasureStream(sequence, tolerance, kPredictorInterpolation, kCoderContextRans,
                   "stream, predictor 2, rANS");
+    MeasureStream(sequence, tolerance, kPredictorInterpolation, kCoderContextRans,
+                  "the same, surface view", kViewSurface);
     std::fflush(stdout);
   }
 }

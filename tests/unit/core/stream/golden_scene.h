@@ -17,6 +17,7 @@ struct GoldenStream {
   size_t broken_edges;   // after the last frame
   bool crumbles;         // into cells from frame 5 on, which key frames tell by labels
   bool regions = false;  // from frame 4 on
+  bool surface = false;
 
   bool interpolates() const { return predictor_id == 2; }
   bool exact() const { return predictor_id == 3; }
@@ -27,6 +28,7 @@ inline constexpr GoldenStream kGoldenStreams[] = {
     {"interpolation_rans", 2, 2, 200, 1015, false},
     {"interpolation_labels", 2, 2, 200, 1015, true},
     {"interpolation_region", 2, 2, 200, 1015, false, true},
+    {"interpolation_surface", 2, 2, 200, 1015, true, false, true},
     {"exact_zstd", 3, 1, 90, 150, false},
 };
 

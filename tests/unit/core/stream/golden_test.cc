@@ -36,6 +36,12 @@ std::vector<std::array<int32_t, 2>> Edges(const std::string& raw) {
   return edges;
 }
 
+std::vector<std::array<int32_t, 4>> Tets(const std::string& raw) {
+  std::vector<std::array<int32_t, 4>> tets(raw.size() / 16);
+  std::memcpy(tets.data(), raw.data(), raw.size());
+  return tets;
+}
+
 TEST(GoldenStreams, DecodeAsTheyDidWhenTheyWereWritten) {
   for (const GoldenStream& golden : kGoldenStreams) {
     SCOPED_TRACE(golden.name);
@@ -45,12 +51,14 @@ TEST(GoldenStreams, DecodeAsTheyDidWhenTheyWereWritten) {
     const std::vector<Vec3> rest = Positions(Load(name + ".rest"));
     std::vector<std::array<int32_t, 2>> edges;
     if (golden.interpolates()) edges = Edges(Load(name + ".edges"));
+    std::vector<std::array<int32_t, 4>> tets;
+    if (golden.surface) tets = Tets(Load(name + ".tets"));
     const BufferAccess file(bytes);
     const auto reader = StreamFileReader::Open(file);
     ASSERT_TRUE(reader.ok()) << reader.status();
     EXPECT_TRUE(reader->has_footer());
     ASSERT_EQ(reader->rows().size(), static_cast<size_t>(kGoldenFrames));
-    FrameDecoder decoder = MakeDecoder(reader->header_bytes(), {rest, edges});
+    FrameDecoder decoder = MakeDecoder(reader->header_bytes(), {rest, edges, tets});
     EXPECT_EQ(decoder.header().predictor_id, golden.predictor_id);
     EXPECT_EQ(decoder.header().coder_id, golden.coder_id);
 
@@ -68,9 +76,10 @@ TEST(GoldenStreams, DecodeAsTheyDidWhenTheyWereWritten) {
       original.positions = Positions(expected.substr(at * frame_bytes, frame_bytes));
       if (golden.exact()) {
         EXPECT_EQ(original.positions, decoder.frame().positions) << at;
-      } else if (golden.regions) {
+      } else if (golden.regions || golden.surface) {
         const std::vector<double> tolerances = decoder.Tolerances();
         for (size_t node = 0; node < rest.size(); ++node) {
+          if (golden.surface && decoder.frame().visible[node] == 0) continue;
           coarse += tolerances[node] > 2 * kGoldenTolerance ? 1 : 0;
           for (size_t axis = 0; axis < 3; ++axis) {
             EXPECT_NEAR(original.positions[node][axis], decoder.frame().positions[node][axis],

@@ -26,6 +26,7 @@ using Edge = std::array<int32_t, 2>;
 struct GoldenBody {
   std::vector<Vec3> rest;
   std::vector<Edge> edges;
+  std::vector<std::array<int32_t, 4>> tets;
 };
 
 GoldenBody TemporalBody() {
@@ -80,6 +81,13 @@ GoldenBody LatticeBody() {
     }
   }
   std::sort(body.edges.begin(), body.edges.end());
+  for (int32_t cell = 0; cell < 7 * 4 * 4; ++cell) {
+    const int32_t first = 25 * (cell / 16) + 5 * (cell / 4 % 4) + cell % 4;
+    std::array<int32_t, 3> steps = {1, 5, 25};
+    do {
+      body.tets.push_back({first, first + steps[0], first + steps[0] + steps[1], first + 31});
+    } while (std::next_permutation(steps.begin(), steps.end()));
+  }
   return body;
 }
 
@@ -151,16 +159,17 @@ absl::Status Write(const GoldenStream& golden) {
   const GoldenBody body = lattice ? LatticeBody() : TemporalBody();
   const auto header = MakeStreamHeader({.mesh_sha256 = std::string(32, '\x5a'),
                                         .edge_count = body.edges.size(),
-                                        .tet_count = 120,
+                                        .tet_count = golden.surface ? body.tets.size() : 120,
                                         .tolerance = golden.exact() ? 0 : kGoldenTolerance,
                                         .keyframe_interval = 5,
                                         .chunk_nodes = 60,
                                         .predictor_id = golden.predictor_id,
                                         .coder_id = golden.coder_id,
+                                        .view_id = golden.surface ? kViewSurface : kViewState,
                                         .regions = golden.regions},
                                        body.rest);
   if (!header.ok()) return header.status();
-  const StreamMesh mesh(body.rest, body.edges);
+  const StreamMesh mesh(body.rest, body.edges, body.tets);
   auto encoder = FrameEncoder::Create(*header, mesh);
   if (!encoder.ok()) return encoder.status();
   std::string stream = encoder->header_bytes();
@@ -204,6 +213,10 @@ absl::Status Write(const GoldenStream& golden) {
   if (lattice) {
     Save(name + ".edges", std::string(reinterpret_cast<const char*>(body.edges.data()),
                                       body.edges.size() * sizeof(Edge)));
+  }
+  if (golden.surface) {
+    Save(name + ".tets", std::string(reinterpret_cast<const char*>(body.tets.data()),
+                                     body.tets.size() * sizeof(body.tets[0])));
   }
   Save(name + ".expected", expected);
   Save(name + ".decoded_sha256", Sha256::Of(decoded));

@@ -32,12 +32,13 @@ inline std::vector<Vec3> RandomBody(size_t nodes, uint64_t seed = 1) {
   return rest;
 }
 
-// Nodes and the edges between them.
+// Nodes, the edges between them, and the tets that have these.
 struct Body {
   std::vector<Vec3> rest;
   std::vector<std::array<int32_t, 2>> edges;
+  std::vector<std::array<int32_t, 4>> tets;
 
-  StreamMesh mesh() const { return {rest, edges}; }
+  StreamMesh mesh() const { return {rest, edges, tets}; }
 };
 
 // A jittered lattice, its cells cut into six tets each.
@@ -63,6 +64,16 @@ inline Body LatticeBody(int x_nodes, int y_nodes, int z_nodes) {
     }
   }
   std::sort(body.edges.begin(), body.edges.end());
+  for (int cell = 0; cell < (x_nodes - 1) * (y_nodes - 1) * (z_nodes - 1); ++cell) {
+    const int x = cell / (z_nodes - 1) / (y_nodes - 1);
+    const int y = cell / (z_nodes - 1) % (y_nodes - 1);
+    const int first = (x * y_nodes + y) * z_nodes + cell % (z_nodes - 1);
+    std::array<int, 3> steps = {1, z_nodes, y_nodes * z_nodes};
+    do {
+      body.tets.push_back({first, first + steps[0], first + steps[0] + steps[1],
+                           first + steps[0] + steps[1] + steps[2]});
+    } while (std::next_permutation(steps.begin(), steps.end()));
+  }
   return body;
 }
 

@@ -1,0 +1,157 @@
+#include "core/stream/visible_places.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "core/mesh/tet_mesh.h"
+#include "core/stream/edge_lookup.h"
+
+namespace cleave {
+namespace {
+
+// Whether the edges that a tet has left do not join its four vertices.
+bool IsApart(uint8_t mask) {
+  std::array<size_t, 4> joined = {0, 1, 2, 3};
+  for (size_t k = 0; k < 6; ++k) {
+    if ((mask >> k & 1) != 0) continue;
+    const auto [a, b] = kTetEdges[k];
+    const size_t from = joined[static_cast<size_t>(a)];
+    const size_t to = joined[static_cast<size_t>(b)];
+    std::replace(joined.begin(), joined.end(), std::max(from, to), std::min(from, to));
+  }
+  return *std::max_element(joined.begin(), joined.end()) > 0;
+}
+
+std::vector<int32_t> PlacesOfNodes(const NodeOrder& order) {
+  std::vector<int32_t> places(order.nodes.size());
+  for (size_t place = 0; place < places.size(); ++place) {
+    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
+  }
+  return places;
+}
+
+// Marks the places of faces that only one tet has.
+std::vector<uint8_t> MarkBoundary(size_t count, std::span<const std::array<int32_t, 4>> tets) {
+  // Faces by their smallest place; of each the two others in order.
+  std::vector<size_t> ends(count + 1, 0);
+  const auto for_faces = [&](const auto& visit) {
+    for (const std::array<int32_t, 4>& tet : tets) {
+      for (size_t without = 0; without < 4; ++without) {
+        std::array<int32_t, 3> face;
+        for (size_t i = 0, k = 0; i < 4; ++i) {
+          if (i != without) face[k++] = tet[i];
+        }
+        std::sort(face.begin(), face.end());
+        visit(face);
+      }
+    }
+  };
+  for_faces([&](const std::array<int32_t, 3>& face) { ++ends[static_cast<size_t>(face[0]) + 1]; });
+  for (size_t place = 0; place < count; ++place) ends[place + 1] += ends[place];
+  std::vector<std::pair<int32_t, int32_t>> others(ends[count]);
+  for_faces([&](const std::array<int32_t, 3>& face) {
+    others[ends[static_cast<size_t>(face[0])]++] = {face[1], face[2]};
+  });
+  std::vector<uint8_t> is_boundary(count, 0);
+  size_t begin = 0;
+  for (size_t place = 0; place < count; ++place) {
+    const size_t end = ends[place];
+    std::sort(others.begin() + static_cast<std::ptrdiff_t>(begin),
+              others.begin() + static_cast<std::ptrdiff_t>(end));
+    for (size_t at = begin; at < end;) {
+      size_t next = at + 1;
+      while (next < end && others[next] == others[at]) ++next;
+      if (next == at + 1) {
+        is_boundary[place] = 1;
+        is_boundary[static_cast<size_t>(others[at].first)] = 1;
+        is_boundary[static_cast<size_t>(others[at].second)] = 1;
+      }
+      at = next;
+    }
+    begin = end;
+  }
+  return is_boundary;
+}
+
+}  // namespace
+
+VisiblePlaces::VisiblePlaces(const NodeOrder& order, std::span<const std::array<int32_t, 2>> edges,
+                             std::span<const std::array<int32_t, 4>> tets)
+    : masks_(tets.size(), 0), offsets_(edges.size() + 1, 0), edge_tets_(6 * tets.size()) {
+  const size_t count = order.nodes.size();
+  const EdgeLookup lookup(edges, count);
+  const auto for_edges = [&](const auto& visit) {
+    for (size_t tet = 0; tet < tets.size(); ++tet) {
+      for (const auto& [a, b] : kTetEdges) {
+        const int32_t edge =
+            lookup.Find(tets[tet][static_cast<size_t>(a)], tets[tet][static_cast<size_t>(b)]);
+        visit(static_cast<size_t>(edge), static_cast<int32_t>(tet));
+      }
+    }
+  };
+  for_edges([&](size_t edge, int32_t) { ++offsets_[edge + 1]; });
+  for (size_t edge = 0; edge < edges.size(); ++edge) offsets_[edge + 1] += offsets_[edge];
+  std::vector<int32_t> next(offsets_.begin(), offsets_.end() - 1);
+  for_edges([&](size_t edge, int32_t tet) { edge_tets_[static_cast<size_t>(next[edge]++)] = tet; });
+  const std::vector<int32_t> places = PlacesOfNodes(order);
+  tets_.reserve(tets.size());
+  for (const std::array<int32_t, 4>& tet : tets) {
+    std::array<int32_t, 4>& placed = tets_.emplace_back();
+    for (size_t i = 0; i < 4; ++i) placed[i] = places[static_cast<size_t>(tet[i])];
+  }
+  is_boundary_ = MarkBoundary(count, tets_);
+  Heal();
+}
+
+void VisiblePlaces::Heal() {
+  std::fill(masks_.begin(), masks_.end(), uint8_t{0});
+  is_visible_ = is_boundary_;
+  is_apart_.assign(is_boundary_.size(), 0);
+  List();
+}
+
+void VisiblePlaces::List() {
+  places_.clear();
+  for (size_t place = 0; place < is_visible_.size(); ++place) {
+    if (is_visible_[place] != 0) places_.push_back(static_cast<int32_t>(place));
+  }
+}
+
+const std::vector<int32_t>& VisiblePlaces::Break(const EdgeGraph& graph,
+                                                 std::span<const int32_t> edges) {
+  fresh_.clear();
+  const auto show = [&](int32_t place) {
+    if (is_visible_[static_cast<size_t>(place)] != 0) return;
+    is_visible_[static_cast<size_t>(place)] = 1;
+    fresh_.push_back(place);
+  };
+  for (const int32_t edge : edges) {
+    const std::array<int32_t, 2> ends = graph.Ends(edge);
+    for (int32_t at = offsets_[static_cast<size_t>(edge)];
+         at < offsets_[static_cast<size_t>(edge) + 1]; ++at) {
+      const auto tet = static_cast<size_t>(edge_tets_[static_cast<size_t>(at)]);
+      const std::array<int32_t, 4>& nodes = tets_[tet];
+      for (size_t k = 0; k < 6; ++k) {
+        const int32_t a = nodes[static_cast<size_t>(kTetEdges[k][0])];
+        const int32_t b = nodes[static_cast<size_t>(kTetEdges[k][1])];
+        if ((a == ends[0] && b == ends[1]) || (a == ends[1] && b == ends[0])) {
+          masks_[tet] = static_cast<uint8_t>(masks_[tet] | 1u << k);
+        }
+      }
+      if (!IsApart(masks_[tet])) continue;
+      for (const int32_t place : nodes) {
+        uint8_t& is_apart = is_apart_[static_cast<size_t>(place)];
+        if (is_apart != 0) continue;
+        is_apart = 1;
+        show(place);
+        for (const int32_t other : graph.Neighbours(place)) show(std::max(other, ~other));
+      }
+    }
+  }
+  std::sort(fresh_.begin(), fresh_.end());
+  if (!fresh_.empty()) List();
+  return fresh_;
+}
+
+}  // namespace cleave

@@ -1,0 +1,315 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/mesh/incidence.h"
+#include "core/mesh/tet_geometry.h"
+#include "core/mesh/tet_mesh.h"
+#include "core/stream/frame_decoder.h"
+#include "core/stream/frame_encoder.h"
+#include "core/surface/faces.h"
+#include "core/surface/point_motion.h"
+#include "core/surface/visible_surface.h"
+#include "gtest/gtest.h"
+#include "tests/unit/core/stream/stream_fixture.h"
+
+namespace cleave {
+namespace {
+
+using namespace stream_test;
+
+constexpr double kTolerance = 1e-4;  // m
+
+StreamParameters OfSurface(const Body& body, uint16_t coder = kCoderContextRans) {
+  StreamParameters parameters = Parameters(body.edges.size(), kTolerance, 8);
+  parameters.tet_count = body.tets.size();
+  parameters.predictor_id = kPredictorInterpolation;
+  parameters.coder_id = coder;
+  parameters.view_id = kViewSurface;
+  return parameters;
+}
+
+// A wavy crack runs along x through the body, and cells of different size come off behind it, some
+// of them a single node; everything tumbles and shakes.
+bool IsBroken(const Body& body, size_t edge, int64_t number) {
+  const auto cell = [&](int32_t node) {
+    const Vec3& x = body.rest[static_cast<size_t>(node)];
+    const double front = 0.08 * static_cast<double>(number - 2);
+    if (x[0] + 0.1 * Random(3, static_cast<uint64_t>(node), 0) > front) return -1;
+    if (Random(4, static_cast<uint64_t>(node), 0) > 0.9) return 1000 + node;
+    return x[1] + 0.03 * Random(5, static_cast<uint64_t>(node), 1) > 0.25 ? 1 : 0;
+  };
+  const auto& [a, b] = body.edges[edge];
+  const int one = cell(a);
+  const int other = cell(b);
+  return one != other && one >= 0 && other >= 0;
+}
+
+Frame TumblingFrame(const Body& body, int64_t number) {
+  Frame frame;
+  frame.frame = number;
+  frame.positions = body.rest;
+  const auto t = static_cast<double>(number);
+  for (size_t node = 0; node < body.rest.size(); ++node) {
+    const Vec3& x = body.rest[node];
+    const double angle = 0.05 * t;
+    frame.positions[node] = {std::cos(angle) * x[0] - std::sin(angle) * x[1] + 0.1 * t,
+                             std::sin(angle) * x[0] + std::cos(angle) * x[1],
+                             x[2] * (1 + 0.1 * std::sin(t + 3 * x[0]))};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      frame.positions[node][axis] += 1e-3 * Random(static_cast<uint64_t>(number), node, axis);
+    }
+  }
+  for (size_t edge = 0; edge < body.edges.size(); ++edge) {
+    if (IsBroken(body, edge, number)) frame.broken_edges.push_back(static_cast<int32_t>(edge));
+  }
+  return frame;
+}
+
+// By definition, from scratch.
+std::vector<uint8_t> VisibleNodes(const Body& body, const std::vector<int32_t>& broken) {
+  std::set<std::array<int32_t, 2>> gone;
+  for (const int32_t edge : broken) gone.insert(body.edges[static_cast<size_t>(edge)]);
+  std::map<std::array<int32_t, 3>, int> faces;
+  std::vector<uint8_t> apart(body.rest.size(), 0);
+  for (std::array<int32_t, 4> tet : body.tets) {
+    std::sort(tet.begin(), tet.end());
+    ++faces[{tet[0], tet[1], tet[2]}];
+    ++faces[{tet[0], tet[1], tet[3]}];
+    ++faces[{tet[0], tet[2], tet[3]}];
+    ++faces[{tet[1], tet[2], tet[3]}];
+    std::array<bool, 4> reached = {true, false, false, false};
+    for (int round = 0; round < 3; ++round) {
+      for (size_t from = 0; from < 4; ++from) {
+        for (size_t to = 0; to < 4; ++to) {
+          const bool joined =
+              !gone.contains({std::min(tet[from], tet[to]), std::max(tet[from], tet[to])});
+          reached[to] = reached[to] || (reached[from] && joined);
+        }
+      }
+    }
+    const bool is_apart = std::count(reached.begin(), reached.end(), true) < 4;
+    for (const int32_t node : tet) apart[static_cast<size_t>(node)] |= is_apart ? 1 : 0;
+  }
+  std::vector<uint8_t> visible = apart;
+  for (const auto& [face, count] : faces) {
+    for (const int32_t node : face) visible[static_cast<size_t>(node)] |= count == 1 ? 1 : 0;
+  }
+  for (const auto& [a, b] : body.edges) {
+    visible[static_cast<size_t>(a)] |= apart[static_cast<size_t>(b)];
+    visible[static_cast<size_t>(b)] |= apart[static_cast<size_t>(a)];
+  }
+  return visible;
+}
+
+std::vector<Vec3> ByPlace(const NodeOrder& order, const std::vector<Vec3>& positions) {
+  std::vector<Vec3> by_place;
+  for (const int32_t node : order.nodes) by_place.push_back(positions[static_cast<size_t>(node)]);
+  return by_place;
+}
+
+TEST(SurfaceView, StencilsAreThoseOfVisiblePlacesHoweverTheEdgesCameToBreak) {
+  const Body body = LatticeBody(10, 6, 6);
+  const NodeOrder order = MakeNodeOrder(body.rest);
+  Stencils grown(order, ByPlace(order, body.rest), body.mesh());
+  size_t visible_before = 0;
+  for (int64_t number = 0; number < 22; ++number) {
+    // Back at once in between, as after an epoch's begin.
+    const std::vector<int32_t> broken = TumblingFrame(body, number == 15 ? 9 : number).broken_edges;
+    grown.SetBroken(order, broken);
+    Stencils made(order, ByPlace(order, body.rest), body.mesh());
+    made.SetBroken(order, broken);
+    const std::vector<uint8_t> visible = VisibleNodes(body, broken);
+    size_t count = 0;
+    for (int32_t place = 0; place < static_cast<int32_t>(order.nodes.size()); ++place) {
+      const auto node = static_cast<size_t>(order.nodes[static_cast<size_t>(place)]);
+      ASSERT_EQ(grown.visible()->Has(place), visible[node] != 0) << place << " in " << number;
+      if (visible[node] == 0) continue;
+      ++count;
+      ASSERT_EQ(grown[place].places, made[place].places) << place << " in " << number;
+      ASSERT_EQ(grown[place].weights, made[place].weights) << place << " in " << number;
+      if (grown[place].leads()) continue;
+      for (const int32_t of : grown[place].places) {
+        ASSERT_TRUE(grown.visible()->Has(of));
+        ASSERT_EQ(grown.pieces()[of], grown.pieces()[place]);
+      }
+    }
+    ASSERT_EQ(grown.leaders(), made.leaders());
+    ASSERT_EQ(grown.leaders().size(), static_cast<size_t>(grown.pieces().count()));
+    if (number != 15 && number != 16) {
+      EXPECT_GE(count, visible_before);
+    }
+    visible_before = count;
+  }
+  EXPECT_GT(visible_before, body.rest.size() * 8 / 10);
+}
+
+class SurfaceViewTest : public ::testing::TestWithParam<uint16_t> {};
+
+TEST_P(SurfaceViewTest, VisibleNodesKeepTheToleranceInEveryFrameAndSeekingEqualsGoingOn) {
+  const Body body = LatticeBody(10, 6, 6);
+  FrameEncoder encoder = MakeEncoder(OfSurface(body, GetParam()), body.mesh());
+  FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+  FrameDecoder late = MakeDecoder(encoder.header_bytes(), body.mesh());
+  size_t first_visible = 0;
+  size_t visible = 0;
+  for (int64_t number = 0; number < 24; ++number) {
+    Frame frame = TumblingFrame(body, number == 13 ? 12 : number);  // 13 holds
+    frame.frame = number;
+    if (number == 20) {
+      ASSERT_TRUE(encoder.StartEpoch(1).ok());
+    }
+    if (number >= 20) frame.broken_edges = TumblingFrame(body, number - 10).broken_edges;
+    // An encoder that goes on from what a viewer has makes the same bytes.
+    auto resumed = FrameEncoder::Create(decoder.header(), body.mesh(), decoder.state());
+    ASSERT_TRUE(resumed.ok()) << resumed.status();
+    if (number >= 20 && decoder.epoch() == 0) {
+      ASSERT_TRUE(resumed->StartEpoch(1).ok());
+    }
+    const auto encoded = encoder.Encode(frame);
+    ASSERT_TRUE(encoded.ok()) << encoded.status();
+    const auto again = resumed->Encode(frame);
+    ASSERT_TRUE(again.ok()) << again.status();
+    ASSERT_EQ(again->bytes, encoded->bytes) << number;
+    if (number == 13) {
+      EXPECT_EQ(encoded->header.kind, FrameKind::kHold);
+    }
+    ASSERT_TRUE(decoder.Apply(encoded->bytes).ok()) << number;
+    if (number >= 8) {
+      ASSERT_TRUE(late.Apply(encoded->bytes).ok()) << number;
+      ASSERT_EQ(late.frame().positions, decoder.frame().positions);
+    }
+    ASSERT_EQ(encoder.state().positions, decoder.state().positions);
+    ASSERT_EQ(encoder.state().previous, decoder.state().previous);
+    const Frame& decoded = decoder.frame();
+    ASSERT_EQ(decoded.visible, VisibleNodes(body, frame.broken_edges));
+    visible = 0;
+    for (size_t node = 0; node < body.rest.size(); ++node) {
+      if (decoded.visible[node] == 0) continue;
+      ++visible;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        ASSERT_NEAR(decoded.positions[node][axis], frame.positions[node][axis], kTolerance);
+        ASSERT_NEAR(static_cast<float>(decoded.positions[node][axis]), frame.positions[node][axis],
+                    kTolerance);
+      }
+    }
+    if (number == 0) first_visible = visible;
+  }
+  EXPECT_EQ(first_visible, 360u - 8 * 4 * 4);
+  EXPECT_GT(visible, first_visible + 60);
+}
+
+TEST_P(SurfaceViewTest, AFrameThatIsRefusedChangesNothing) {
+  const Body body = LatticeBody(10, 6, 6);
+  FrameEncoder encoder = MakeEncoder(OfSurface(body, GetParam()), body.mesh());
+  FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+  for (int64_t number = 0; number < 14; ++number) {
+    const std::string good = encoder.Encode(TumblingFrame(body, number))->bytes;
+    // The state hash fails when all else was decoded, with what came into view.
+    FrameHeader header = SplitFrame(good)->header;
+    header.state_hash ^= 1;
+    std::string forged;
+    AppendFrameHeader(header, forged);
+    forged += good.substr(kFrameHeaderBytes);
+    const StreamState before = decoder.state();
+    ASSERT_EQ(decoder.Apply(forged).code(), absl::StatusCode::kDataLoss) << number;
+    // And one that has no positions.
+    FrameHeader bare = SplitFrame(good)->header;
+    bare.section_count = 0;
+    bare.frame_bytes = kFrameHeaderBytes;
+    bare.broken_edges = before.broken_edges.size();
+    std::string empty;
+    AppendFrameHeader(bare, empty);
+    ASSERT_FALSE(decoder.Apply(empty).ok());
+    ASSERT_EQ(decoder.state().positions, before.positions);
+    ASSERT_EQ(decoder.state().previous, before.previous);
+    ASSERT_TRUE(decoder.Apply(good).ok()) << number;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Coders, SurfaceViewTest,
+                         ::testing::Values(kCoderZstdPlanes, kCoderContextRans),
+                         [](const ::testing::TestParamInfo<uint16_t>& coder) {
+                           return "Coder" + std::to_string(coder.param);
+                         });
+
+// All that is drawn follows from visible nodes: with others anywhere it is the same to the bit.
+TEST(SurfaceView, TheSurfaceThatIsDrawnIsThatOfAllNodes) {
+  const Body body = LatticeBody(12, 6, 6);
+  TetMesh mesh;
+  mesh.rest_positions = body.rest;
+  mesh.tets = body.tets;
+  for (size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    const TetCorners corners = CornersOf(mesh, static_cast<int64_t>(tet));
+    if (SignedVolume(corners) < 0) std::swap(mesh.tets[tet][2], mesh.tets[tet][3]);
+  }
+  const Incidence incidence = BuildIncidence(mesh);
+  ASSERT_EQ(incidence.edges, body.edges);
+  const Faces faces = BuildFaces(mesh);
+  VisibleSurface surface(mesh, incidence, faces, {});
+  PointMotion of_all(mesh, incidence);
+  PointMotion of_visible(mesh, incidence);
+  FrameEncoder encoder = MakeEncoder(OfSurface(body), body.mesh());
+  FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+  std::vector<int32_t> broken;
+  size_t off_nodes = 0;
+  size_t hidden = 0;
+  for (int64_t number = 0; number < 20; ++number) {
+    const Frame frame = TumblingFrame(body, number);
+    ASSERT_TRUE(decoder.Apply(encoder.Encode(frame)->bytes).ok());
+    std::vector<int32_t> fresh;
+    std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(), broken.begin(),
+                        broken.end(), std::back_inserter(fresh));
+    broken = frame.broken_edges;
+    surface.Break(fresh);
+    const Frame& seen = decoder.frame();
+    std::vector<Vec3> all = seen.positions;
+    for (size_t node = 0; node < all.size(); ++node) {
+      if (seen.visible[node] == 0) all[node] = frame.positions[node];
+      hidden += seen.visible[node] == 0 ? 1 : 0;
+    }
+    std::vector<Vec3> points;
+    std::vector<Vec3> expected;
+    of_visible.Move(surface.topology(), seen.positions, points);
+    of_all.Move(surface.topology(), all, expected);
+    ASSERT_EQ(points, expected) << number;
+    for (const SurfacePoint& point : surface.topology().points) {
+      off_nodes += point.owned_by_all() ? 0 : 1;
+    }
+  }
+  EXPECT_GT(off_nodes, 1000u);
+  EXPECT_GT(hidden, 500u);
+}
+
+TEST(SurfaceView, WhatCannotBeIsRefused) {
+  const Body body = LatticeBody(4, 4, 4);
+  StreamParameters parameters = OfSurface(body);
+  const auto header = MakeStreamHeader(parameters, body.rest);
+  ASSERT_TRUE(header.ok()) << header.status();
+  EXPECT_FALSE(FrameEncoder::Create(*header, {body.rest, body.edges}).ok());
+  Body other = body;
+  std::swap(other.tets[0][3], other.tets[20][3]);
+  EXPECT_EQ(FrameEncoder::Create(*header, other.mesh()).status().code(),
+            absl::StatusCode::kFailedPrecondition);
+  other.tets[0][3] = 64;
+  EXPECT_FALSE(FrameEncoder::Create(*header, other.mesh()).ok());
+  parameters.predictor_id = kPredictorTemporal;
+  parameters.coder_id = kCoderZstdPlanes;
+  EXPECT_FALSE(MakeStreamHeader(parameters, body.rest).ok());
+  // What a surface view gives is not every node, and no other stream takes it for that.
+  FrameEncoder encoder = MakeEncoder(OfSurface(body), body.mesh());
+  FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+  ASSERT_TRUE(decoder.Apply(encoder.Encode(TumblingFrame(body, 0))->bytes).ok());
+  parameters.view_id = kViewState;
+  FrameEncoder of_state = MakeEncoder(parameters, body.mesh());
+  EXPECT_EQ(of_state.Encode(decoder.frame()).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace cleave
