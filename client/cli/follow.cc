@@ -26,6 +26,7 @@ FrameStreamOptions StreamOptions(const FollowOptions& options, ProgressDisplay& 
   stream.rung = options.accuracy.rung();
   if (options.accuracy.tolerance > 0) stream.tolerance = options.accuracy.tolerance;
   stream.region = options.region.message();
+  stream.surface = options.surface;
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last())
       stream.resume = FramePosition{last->epoch, last->frame, last->state_hash};
@@ -121,7 +122,8 @@ absl::StatusOr<FollowResult> Follow(Client& client, Interrupt& interrupt,
   std::atomic<bool> interrupted{false};
   const ScopedHandler handler(interrupt, SignalHandler(client, options, stream, interrupted));
   CLEAVE_RETURN_IF_ERROR(stream.Open());
-  if (options.accuracy.asked() || stream.outside_tolerance() > 0) TellAccuracy(stream, options);
+  if (options.accuracy.asked() || options.surface || stream.outside_tolerance() > 0)
+    TellAccuracy(stream, options);
   if (options.recorder != nullptr) {
     if (const auto last = options.recorder->last()) TakeOver(*last, result);
     CLEAVE_RETURN_IF_ERROR(options.recorder->Begin(stream.header_bytes()));

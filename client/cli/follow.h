@@ -31,6 +31,7 @@ struct FollowOptions {
   AccuracyOptions accuracy;      // asked of the server
   RegionOptions region;          // that is looked at
   bool latest = false;           // leave out what is before the newest key frame, where behind
+  bool surface = false;          // no more than surfaces are drawn from
   Recorder* recorder = nullptr;  // may be null; the stream goes on behind its last frame
   EventFile* events = nullptr;   // takes what breaks; may be null
   // Called once before the first frame, when the recorder fits the stream, with the mesh's asset.

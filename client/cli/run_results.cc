@@ -82,7 +82,8 @@ absl::StatusOr<RecordedRun> OpenRecordedRun(const std::string& path, const std::
   CLEAVE_ASSIGN_OR_RETURN(run.mesh, ReadAnyMesh(mesh_file, unit_scale));
   CLEAVE_RETURN_IF_ERROR(CheckAndOrientMesh(run.mesh).ToStatus());
   const auto edges = BuildIncidence(run.mesh).edges;
-  CLEAVE_ASSIGN_OR_RETURN(run.recording, OpenRecording(frames, {run.mesh.rest_positions, edges}));
+  CLEAVE_ASSIGN_OR_RETURN(run.recording,
+                          OpenRecording(frames, {run.mesh.rest_positions, edges, run.mesh.tets}));
   if (run.recording.frames.count == 0)
     return absl::FailedPreconditionError(absl::StrCat(frames, ": holds no frames yet"));
   if (!run.recording.ended)
@@ -106,6 +107,7 @@ absl::StatusOr<FrameSource> SelectFrames(const Recording& recording, int64_t fir
         "; the recording has ", recording.rows.front().frame, " to ", recording.rows.back().frame));
   FrameSource selected;
   selected.count = static_cast<int64_t>(positions->size());
+  selected.surface_only = recording.frames.surface_only;
   selected.pass_by = [positions, read = recording.frames.read](
                          int64_t position, const FrameSource::Visit& visit) -> absl::Status {
     const auto at = static_cast<size_t>(position);

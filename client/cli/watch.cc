@@ -23,6 +23,7 @@ struct Options {
   GoalOptions goal;
   AccuracyOptions accuracy;
   RegionOptions region;
+  bool surface = false;
   std::string session;
   std::string out;
   int64_t from = 0;
@@ -86,6 +87,7 @@ absl::Status Watch(Program& program, const Options& options) {
   follow.head_frame = head;
   follow.accuracy = options.accuracy;
   follow.region = options.region;
+  follow.surface = options.surface;
   follow.json = options.json;
   follow.quiet = options.quiet;
   return Record(*client, program.interrupt, options, follow, scene);
@@ -111,6 +113,9 @@ void AddWatch(CLI::App& app, Program& program) {
       ->type_name("FRAME");
   AddAccuracyOptions(*verb, options->accuracy, "of what is sent", "all that the session keeps");
   AddRegionOptions(*verb, options->region);
+  verb->add_flag("--surface", options->surface,
+                 "Only the nodes that surfaces are drawn from: for pictures, ply, obj and vtu of "
+                 "large bodies, not for strains, vtu-volume or bakes");
   verb->add_flag("--run", options->run, "Let a paused session run on first");
   AddGoalOptions(*verb, options->goal);
   verb->add_flag("--stay", options->stay, "Stay when the run is over, for frames to come");

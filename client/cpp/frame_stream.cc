@@ -60,6 +60,7 @@ absl::Status FrameStream::Connect() {
   if (options_.tolerance.has_value()) request.set_tolerance(*options_.tolerance);
   if (options_.rung.has_value()) request.set_rung(RungMessage(options_.rung));
   if (options_.region.has_value()) *request.mutable_region() = *options_.region;
+  if (options_.surface) request.set_view(v1::FRAME_VIEW_SURFACE);
   request.set_latest(options_.latest);
   if (position_.has_value()) {
     request.set_first_frame(position_->frame + 1);
@@ -95,8 +96,8 @@ absl::Status FrameStream::Connect() {
   if (!start_.has_value()) {
     CLEAVE_RETURN_IF_ERROR(ParseStreamHeader(response.start().header()).status());
     if (options_.rest_positions.has_value()) {
-      auto decoder = FrameDecoder::Create(response.start().header(),
-                                          {*options_.rest_positions, options_.edges});
+      auto decoder = FrameDecoder::Create(
+          response.start().header(), {*options_.rest_positions, options_.edges, options_.tets});
       if (!decoder.ok()) return decoder.status();
       decoder_.emplace(*std::move(decoder));
     }

@@ -46,11 +46,13 @@ struct FrameStreamOptions {
   std::optional<double> tolerance;
   // Set: only this is as accurate as asked, and exactly so; see frame.proto.
   std::optional<v1::RegionOfInterest> region;
-  bool latest = false;  // leave out what is before the newest key frame, where behind
+  bool surface = false;  // only the nodes that surfaces are drawn from; see frame.proto
+  bool latest = false;   // leave out what is before the newest key frame, where behind
   // Rest positions (m) of the session's mesh; then every frame is decoded, see decoder(). With them
-  // its edges (Incidence::edges).
+  // its edges (Incidence::edges), and with `surface` its tets.
   std::optional<std::vector<Vec3>> rest_positions;
   std::vector<std::array<int32_t, 2>> edges;
+  std::vector<std::array<int32_t, 4>> tets;
   // Told whenever the stream was cut and is tried again after `delay`. May be empty.
   std::function<void(const absl::Status& why, std::chrono::milliseconds delay)> on_cut;
 };

@@ -21,6 +21,10 @@ absl::Status FinerThanKept(const v1::StreamFramesRequest& request, absl::string_
                                 "scene.output.tolerance keeps them"));
 }
 
+bool WantsSurface(const v1::StreamFramesRequest& request) {
+  return request.view() == v1::FRAME_VIEW_SURFACE;
+}
+
 void CheckRegion(const v1::RegionOfInterest& region, Faults& faults) {
   if (region.nodes().empty() && !region.has_box()) {
     faults.Error("region", "has neither nodes nor a box");
@@ -82,7 +86,28 @@ absl::StatusOr<FrameChoice> ChooseRegion(const v1::StreamFramesRequest& request,
   for (const Rung rung : kRungs) {
     if (RungTolerance(rung, kept.diagonal()) == choice.tolerance) choice.rung = rung;
   }
-  choice.encoding = EncodingOfRegion(region, choice.tolerance, choice.outside_tolerance, kept);
+  choice.encoding = EncodingOfRegion(region, choice.tolerance, choice.outside_tolerance,
+                                     WantsSurface(request), kept);
+  return choice;
+}
+
+absl::StatusOr<FrameChoice> ChooseSurface(const v1::StreamFramesRequest& request,
+                                          std::optional<double> asked, const StreamHeader& kept) {
+  FrameChoice choice;
+  for (const Rung rung : kRungs) {  // from coarse to fine
+    const double tolerance = RungTolerance(rung, kept.diagonal());
+    if (tolerance <= 0 || tolerance < 2 * kept.tolerance) continue;
+    choice.rung = rung;
+    choice.tolerance = tolerance;
+    if (asked.has_value() && tolerance <= *asked) break;
+  }
+  if (!choice.rung.has_value() || (asked.has_value() && choice.tolerance > *asked)) {
+    return FinerThanKept(request, absl::StrCat(asked.value_or(kept.tolerance),
+                                               " m in the surface view is finer than a rung at "
+                                               "least twice as coarse as the ",
+                                               kept.tolerance, " m at which the frames are kept"));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(choice.encoding, EncodingOfRung(*choice.rung, /*surface=*/true, kept));
   return choice;
 }
 
@@ -95,6 +120,9 @@ void CheckFrameChoice(const v1::StreamFramesRequest& request, Faults& faults) {
   if (request.has_rung() && !v1::Rung_IsValid(request.rung())) {
     faults.Error("rung", absl::StrCat(static_cast<int>(request.rung()), " is no rung"));
   }
+  if (!v1::FrameView_IsValid(request.view())) {
+    faults.Error("view", absl::StrCat(static_cast<int>(request.view()), " is no view"));
+  }
   if (request.has_region()) CheckRegion(request.region(), faults);
 }
 
@@ -106,11 +134,13 @@ absl::StatusOr<FrameChoice> ChooseFrames(const v1::StreamFramesRequest& request,
     asked = RungTolerance(*rung, kept.diagonal());
   }
   if (request.has_region()) return ChooseRegion(request, asked, kept);
+  if (WantsSurface(request)) return ChooseSurface(request, asked, kept);
   const absl::StatusOr<RungChoice> snapped = SnapDown(asked.value_or(kept.tolerance), kept);
   if (!snapped.ok()) return FinerThanKept(request, snapped.status().message());
   FrameChoice choice{.rung = snapped->rung, .tolerance = snapped->tolerance};
   if (!snapped->as_kept) {
-    CLEAVE_ASSIGN_OR_RETURN(choice.encoding, EncodingOfRung(*snapped->rung, kept));
+    CLEAVE_ASSIGN_OR_RETURN(choice.encoding,
+                            EncodingOfRung(*snapped->rung, /*surface=*/false, kept));
   }
   return choice;
 }

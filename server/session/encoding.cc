@@ -9,22 +9,25 @@
 
 namespace cleave {
 
-absl::StatusOr<worker::v1::Encoding> EncodingOfRung(Rung rung, const StreamHeader& kept) {
+absl::StatusOr<worker::v1::Encoding> EncodingOfRung(Rung rung, bool surface,
+                                                    const StreamHeader& kept) {
   const absl::StatusOr<RungChoice> choice = SnapDown(rung, kept);
   if (!choice.ok() || choice->as_kept || choice->rung != rung)
     return absl::InvalidArgumentError(absl::StrCat("the session's frames, kept at ", kept.tolerance,
                                                    " m, have no coarser rung \"", RungName(rung),
                                                    "\""));
   worker::v1::Encoding encoding;
-  encoding.set_name(std::string(RungName(rung)));
+  encoding.set_name(absl::StrCat(surface ? "surface-" : "", RungName(rung)));
   encoding.set_tolerance(ToleranceOfAnew(rung, kept));
+  encoding.set_surface(surface);
   return encoding;
 }
 
 worker::v1::Encoding EncodingOfRegion(const v1::RegionOfInterest& region, double inside,
-                                      double outside, const StreamHeader& kept) {
+                                      double outside, bool surface, const StreamHeader& kept) {
   worker::v1::Encoding encoding;
   encoding.set_tolerance(inside - kept.tolerance);
+  encoding.set_surface(surface);
   *encoding.mutable_region() = region;
   encoding.mutable_region()->set_outside_tolerance(outside - kept.tolerance);
   encoding.set_name(

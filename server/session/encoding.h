@@ -17,12 +17,13 @@ inline constexpr absl::string_view kRegionPrefix = "region-";
 
 // How a rung is encoded from frames that are kept in a stream like `kept`. Error: InvalidArgument
 // when those are too coarse for it.
-absl::StatusOr<worker::v1::Encoding> EncodingOfRung(Rung rung, const StreamHeader& kept);
+absl::StatusOr<worker::v1::Encoding> EncodingOfRung(Rung rung, bool surface,
+                                                    const StreamHeader& kept);
 
 // A region with these tolerances (m) against the simulation; the name follows from all of it.
 // Precondition: inside is at least twice kept.tolerance and above 0, outside at least twice inside.
 worker::v1::Encoding EncodingOfRegion(const v1::RegionOfInterest& region, double inside,
-                                      double outside, const StreamHeader& kept);
+                                      double outside, bool surface, const StreamHeader& kept);
 
 // The region of an encoding, for its encoder.
 std::optional<Region> RegionOf(const worker::v1::Encoding& encoding);

@@ -113,7 +113,7 @@ absl::StatusOr<worker::v1::Encoding> EncodingOf(const SessionPaths& paths,
   if (arguments.encoding.has_value()) return *arguments.encoding;
   CLEAVE_ASSIGN_OR_RETURN(const std::string kept, FrameLogReader(paths.frames()).ReadHeader());
   CLEAVE_ASSIGN_OR_RETURN(const StreamHeader header, ParseStreamHeader(kept));
-  return EncodingOfRung(*arguments.rung, header);
+  return EncodingOfRung(*arguments.rung, /*surface=*/false, header);
 }
 
 absl::Status FollowSession(const SessionPaths& paths, const Arguments& arguments,

@@ -18,6 +18,7 @@ absl::StatusOr<std::unique_ptr<RungLog>> RungLog::Open(const SessionPaths& paths
   std::unique_ptr<RungLog> opened(new RungLog(paths, encoding));
   opened->edges_ = BuildIncidence(inputs.mesh).edges;
   opened->rest_positions_ = inputs.mesh.rest_positions;
+  if (opened->surface_) opened->tets_ = inputs.mesh.tets;
   CLEAVE_RETURN_IF_ERROR(opened->MakeHeader(inputs));
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(opened->directory_));
   if (!opened->Resume().ok()) CLEAVE_RETURN_IF_ERROR(opened->Begin());
@@ -36,6 +37,7 @@ absl::Status RungLog::MakeHeader(const SessionInputs& inputs) {
   parameters.frames_per_second = kept.frames_per_second;
   ChooseIds(inputs.mesh.rest_positions, parameters);
   parameters.regions = region_.has_value();
+  parameters.view_id = surface_ ? kViewSurface : kViewState;
   CLEAVE_ASSIGN_OR_RETURN(header_, MakeStreamHeader(parameters, inputs.mesh.rest_positions));
   return absl::OkStatus();
 }

@@ -20,10 +20,10 @@
 
 namespace cleave {
 
-// A session's frames as a coarser rung, or with a region of interest: decoded from the session's
-// log, encoded anew and committed to a log of its own, from frame 0 on. Its bytes follow from the
-// session's alone, whoever watches and whenever, so nothing is lost with it: a log that is damaged,
-// or ahead of the session's, is begun anew. Not thread-safe.
+// A session's frames as a coarser rung, in the surface view, or with a region of interest: decoded
+// from the session's log, encoded anew and committed to a log of its own, from frame 0 on. Its
+// bytes follow from the session's alone, whoever watches and whenever, so nothing is lost with it:
+// a log that is damaged, or ahead of the session's, is begun anew. Not thread-safe.
 class RungLog {
  public:
   // Goes on behind the last frame of the rung's log. The session has frame 0, and the caller owns
@@ -49,6 +49,7 @@ class RungLog {
       : directory_(paths.rung(encoding.name())),
         kept_(paths.frames()),
         tolerance_(encoding.tolerance()),
+        surface_(encoding.surface()),
         region_(RegionOf(encoding)) {}
 
   absl::Status MakeHeader(const SessionInputs& inputs);
@@ -56,16 +57,18 @@ class RungLog {
   // Brings both ends of the encoding to the head of the log.
   absl::Status Resume();
   absl::Status Begin();
-  StreamMesh mesh() const { return {rest_positions_, edges_}; }
+  StreamMesh mesh() const { return {rest_positions_, edges_, tets_}; }
 
   std::string directory_;
   FrameLogReader kept_;  // the session's
   double tolerance_;     // m, against those
+  bool surface_;         // the surface view
   std::optional<Region> region_;
   std::string kept_header_bytes_;
   std::vector<Vec3> rest_positions_;
   std::vector<std::array<int32_t, 2>> edges_;
-  StreamHeader header_;  // of the rung
+  std::vector<std::array<int32_t, 4>> tets_;  // for the surface view
+  StreamHeader header_;                       // of the rung
   std::optional<FrameLogWriter> log_;
   std::optional<FrameDecoder> decoder_;  // of the session's frames
   std::optional<FrameEncoder> encoder_;

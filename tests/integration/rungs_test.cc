@@ -18,6 +18,7 @@
 #include "client/cpp/frame_stream.h"
 #include "client/cpp/mesh_transfer.h"
 #include "core/mesh/incidence.h"
+#include "tests/integration/frame_streams.h"
 #include "tests/integration/test_server.h"
 
 namespace cleave {
@@ -25,33 +26,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr int64_t kFrames = 60;
 constexpr int kKeyframeInterval = 7;  // of BreakingBar
-
-FrameStreamOptions Asking(std::optional<Rung> rung) {
-  FrameStreamOptions options;
-  options.session = "sessions/bar";
-  options.rung = rung;
-  return options;
-}
-
-std::vector<std::string> Take(FrameStream& stream, int64_t count) {
-  std::vector<std::string> frames;
-  while (static_cast<int64_t>(frames.size()) < count) {
-    absl::StatusOr<std::optional<StreamedFrame>> frame = stream.Next();
-    EXPECT_TRUE(frame.ok()) << frame.status();
-    if (!frame.ok() || !frame->has_value()) break;
-    frames.push_back(std::move((*frame)->bytes));
-  }
-  return frames;
-}
-
-std::vector<std::string> TakeAll(FrameStream& stream) { return Take(stream, kFrames + 2); }
-
-std::vector<std::string> TakeAll(Client& client, Rung rung) {
-  FrameStream stream(client, Asking(rung));
-  return TakeAll(stream);
-}
 
 // What a preview of the whole run is when nothing disturbs it, asked for when the run is over.
 const std::vector<std::string>& UndisturbedPreview() {
@@ -63,16 +38,6 @@ const std::vector<std::string>& UndisturbedPreview() {
     return TakeAll(*client, Rung::kPreview);
   }();
   return frames;
-}
-
-v1::Session CreateLossless(Client& client) {
-  v1::CreateSessionRequest request;
-  request.set_session_id("bar");
-  *request.mutable_scene() = BreakingBar(kFrames);
-  request.set_rung(v1::RUNG_LOSSLESS);
-  const absl::StatusOr<v1::CreateSessionResponse> created = client.CreateSession(request);
-  EXPECT_TRUE(created.ok()) << created.status();
-  return created->session();
 }
 
 double Largest(const std::vector<Vec3>& one, const std::vector<Vec3>& other) {
@@ -335,87 +300,6 @@ TEST(RungsTest, WhoeverJoinsHasTheNamesOfThePiecesAtOnce) {
     ASSERT_EQ(names, known[static_cast<size_t>(frame->header.frame)]) << frame->header.frame;
   }
   EXPECT_EQ(names, known.back());
-}
-
-v1::RegionOfInterest WithNode(int32_t node) {
-  v1::RegionOfInterest region;
-  region.add_nodes(node);
-  return region;
-}
-
-FrameStreamOptions Looking(std::optional<Rung> rung, const v1::RegionOfInterest& region) {
-  FrameStreamOptions options = Asking(rung);
-  options.region = region;
-  return options;
-}
-
-TEST(RungsTest, ARegionIsAsAccurateAsAskedAndOtherPiecesAreCoarser) {
-  constexpr int64_t kLast = 150;  // by then the bar is broken
-  TestServer server;
-  const std::unique_ptr<Client> client = server.Connect();
-  v1::CreateSessionRequest request;
-  request.set_session_id("bar");
-  *request.mutable_scene() = BreakingBar(kLast);
-  request.set_rung(v1::RUNG_FINE);
-  ASSERT_TRUE(client->CreateSession(request).ok());
-  RunToEnd(*client, "bar");
-  const absl::StatusOr<TetMesh> mesh =
-      DownloadMesh(*client, client->GetSession("sessions/bar")->scene().mesh().asset(), {});
-  ASSERT_TRUE(mesh.ok()) << mesh.status();
-  FrameStreamOptions options = Asking(std::nullopt);
-  options.rest_positions = mesh->rest_positions;
-  options.edges = BuildIncidence(*mesh).edges;
-  FrameStream kept(*client, options);
-  options.rung = Rung::kStandard;
-  options.region = WithNode(0);
-  FrameStream seen(*client, options);
-  ASSERT_TRUE(kept.Open().ok());
-  ASSERT_TRUE(seen.Open().ok());
-  EXPECT_EQ(seen.rung(), Rung::kStandard);
-  EXPECT_NEAR(seen.outside_tolerance(), 10 * seen.tolerance(), 1e-12);
-  int coarse = 0;
-  for (int64_t frame = 0; frame <= kLast; ++frame) {
-    ASSERT_TRUE((*kept.Next()).has_value());
-    const absl::StatusOr<std::optional<StreamedFrame>> next = seen.Next();
-    ASSERT_TRUE(next.ok() && next->has_value()) << next.status() << server.log();
-    const std::vector<double> tolerances = seen.decoder()->Tolerances();
-    ASSERT_LE(tolerances[0] + kept.tolerance(), 1.0001 * seen.tolerance());
-    for (size_t node = 0; node < tolerances.size(); ++node) {
-      coarse += tolerances[node] > tolerances[0] ? 1 : 0;
-      ASSERT_LE(tolerances[node] + kept.tolerance(), 1.0001 * seen.outside_tolerance());
-      for (size_t axis = 0; axis < 3; ++axis) {
-        ASSERT_NEAR(seen.decoder()->frame().positions[node][axis],
-                    kept.decoder()->frame().positions[node][axis], tolerances[node]);
-      }
-    }
-  }
-  EXPECT_GT(coarse, 0);
-}
-
-TEST(RungsTest, RegionsThatCannotBeAreRefusedWithEveryFault) {
-  TestServer server;
-  const std::unique_ptr<Client> client = server.Connect();
-  Create(*client, "bar", BreakingBar(kFrames));
-  WaitFor(*client, "bar", Rests);
-  const auto refusal = [&](std::optional<Rung> rung, const v1::RegionOfInterest& region) {
-    FrameStream stream(*client, Looking(rung, region));
-    return std::string(stream.Open().message());
-  };
-  EXPECT_THAT(refusal(std::nullopt, {}), HasSubstr("region: has neither nodes nor a box"));
-  v1::RegionOfInterest region = WithNode(1 << 30);
-  region.set_outside_tolerance(0);
-  const std::string faults = refusal(std::nullopt, region);
-  EXPECT_THAT(faults, HasSubstr("region.nodes[0]: 1073741824 is outside [0, "));
-  EXPECT_THAT(faults, HasSubstr("region.outside_tolerance: 0 m is outside ["));
-  EXPECT_THAT(refusal(Rung::kStandard, WithNode(0)), HasSubstr("below twice"));
-  region = WithNode(0);
-  for (int i = 0; i < 3; ++i) region.mutable_box()->add_min(1);
-  EXPECT_THAT(refusal(std::nullopt, region), HasSubstr("region.box: min and max have three"));
-  for (int i = 0; i < 3; ++i) region.mutable_box()->add_max(i);
-  EXPECT_THAT(refusal(std::nullopt, region), HasSubstr("region.box: from 1 to 0 m"));
-  FrameStream stream(*client, Looking(std::nullopt, WithNode(0)));
-  ASSERT_TRUE(stream.Open().ok());
-  EXPECT_GE(stream.outside_tolerance(), 2 * stream.tolerance());
 }
 
 TEST(RungsTest, ASessionCanBeDeletedWhileARungIsEncoded) {

@@ -315,6 +315,11 @@ class Bake {
 absl::StatusOr<BakeResult> WriteBake(const TetMesh& mesh, const FrameSource& frames,
                                      const BakeOptions& options, const Progress& progress) {
   CLEAVE_RETURN_IF_ERROR(CheckOptions(frames, options));
+  if (frames.surface_only) {
+    return absl::FailedPreconditionError(
+        "the recording is of a surface view, which does not tell of nodes before a crack shows "
+        "them: no bake");
+  }
   return Bake(mesh, frames, options, progress).Run();
 }
 

@@ -47,8 +47,12 @@ VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
   grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
   grid.point_data.push_back(MakeVtuVectors("rest", surface.rest_points));
   grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
-  grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
-  grid.point_data.push_back(MakeVtuArray<float>("strain", surface.strains));
+  if (!surface.velocities.empty()) {
+    grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
+  }
+  if (!surface.strains.empty()) {
+    grid.point_data.push_back(MakeVtuArray<float>("strain", surface.strains));
+  }
   grid.point_data.push_back(MakeVtuArray<float>("damage", surface.damages));
   if (!surface.potencies.empty()) {
     grid.point_data.push_back(MakeVtuArray<float>("potency", surface.potencies));
@@ -82,11 +86,11 @@ int64_t OpenFacesOf(const SurfaceSequence& sequence) {
 }
 
 // What series carry beside positions, from options for the lot.
-SequenceOptions Carried(const ExportOptions& options) {
-  return {.strains = true,
+SequenceOptions Carried(const FrameSource& frames, const ExportOptions& options) {
+  return {.strains = !frames.surface_only,
           .damages = true,
           .displacements = true,
-          .velocities = true,
+          .velocities = !frames.surface_only,
           .node_potencies = options.node_potencies,
           .sources = true,
           .render_mesh = options.render_mesh};
@@ -173,7 +177,11 @@ class SeriesWriter {
 absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSource& frames,
                                             VtuContent content, const ExportOptions& options,
                                             const Progress& progress) {
-  SequenceOptions carried = Carried(options);
+  if (content == VtuContent::kVolume && frames.surface_only) {
+    return absl::FailedPreconditionError(
+        "the recording is of a surface view, which does not tell of all nodes: no volume");
+  }
+  SequenceOptions carried = Carried(frames, options);
   if (content == VtuContent::kVolume) carried.render_mesh = nullptr;
   SurfaceSequence sequence(mesh, carried);
   std::optional<VolumeSequence> volume;
@@ -199,7 +207,7 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
                                             const ExportOptions& options,
                                             const Progress& progress) {
-  SurfaceSequence sequence(mesh, Carried(options));
+  SurfaceSequence sequence(mesh, Carried(frames, options));
   Format format;
   format.pass_by = [&](const Frame& frame) { return sequence.PassBy(frame); };
   format.advance = [&](const Frame& frame) { return sequence.Advance(frame); };

@@ -43,6 +43,7 @@ absl::StatusOr<Recording> OpenRecording(const std::string& path, const StreamMes
     player->positions.push_back(position);
     recording.rows.push_back(player->reader.rows()[position]);
   }
+  recording.frames.surface_only = recording.header.is_surface();
   recording.frames.count = static_cast<int64_t>(newest.size());
   recording.frames.read = [player, path](int64_t position) -> absl::StatusOr<Frame> {
     if (position < 0 || position >= static_cast<int64_t>(player->positions.size()))

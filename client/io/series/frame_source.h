@@ -13,6 +13,8 @@ namespace cleave {
 // memory.
 struct FrameSource {
   int64_t count = 0;
+  // Only nodes that surfaces are drawn from are known (Frame::visible).
+  bool surface_only = false;
   // The frame at a position in [0, count), by ascending time. Positions are asked for in ascending
   // order within a pass; a caller may make several passes. Called from one thread at a time.
   std::function<absl::StatusOr<Frame>(int64_t position)> read;

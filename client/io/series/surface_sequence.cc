@@ -10,7 +10,9 @@
 #include <iterator>
 #include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "client/io/series/frame_check.h"
+#include "core/base/faults.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 
@@ -79,7 +81,22 @@ absl::Status SurfaceSequence::PassBy(const Frame& frame) {
   return absl::OkStatus();
 }
 
+absl::Status SurfaceSequence::CheckKnown(const Frame& frame) const {
+  if (frame.visible.empty()) return absl::OkStatus();
+  Faults faults;
+  const auto refuse = [&](bool wanted, const char* field) {
+    if (wanted)
+      faults.Error(field, absl::StrCat("frame ", frame.frame,
+                                       " is of a surface view, which does not tell of all nodes"));
+  };
+  refuse(options_.strains, "strains");
+  refuse(options_.velocities, "velocities");
+  refuse(options_.render_mesh != nullptr, "render_mesh");
+  return faults.ToStatus();
+}
+
 absl::Status SurfaceSequence::Advance(const Frame& frame) {
+  CLEAVE_RETURN_IF_ERROR(CheckKnown(frame));
   CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(), last_time_));
   last_time_ = frame.time;
   changed_ = !started_ || is_stale_ || frame.broken_edges != broken_edges_;

@@ -43,7 +43,8 @@ class SurfaceSequence {
   SurfaceSequence& operator=(const SurfaceSequence&) = delete;
 
   // Goes on to `frame`, whose time is not before the last one's; frames may be left out. Errors:
-  // InvalidArgument for a frame that is not this mesh's or not finite; then nothing changed.
+  // InvalidArgument for a frame that is not this mesh's or not finite, or is of a surface view
+  // where strains, velocities or a render mesh are wanted; then nothing changed.
   absl::Status Advance(const Frame& frame);
   // Takes note of what broke in a frame that is not to be shown, and nothing else: the names of
   // pieces follow from it. Errors: as of Advance.
@@ -73,6 +74,7 @@ class SurfaceSequence {
   std::vector<float> TetStrains(const std::vector<Vec3>& positions) const;
 
  private:
+  absl::Status CheckKnown(const Frame& frame) const;
   // Breaks what broke since the last frame.
   void Follow(const Frame& frame);
   void TakeApart(const Frame& frame);

@@ -91,6 +91,7 @@ class Session:
         tolerance=None,
         latest=False,
         region=None,
+        surface=False,
     ):
         """Yields every Frame once, in order, until the run reaches its goal or is paused.
 
@@ -99,7 +100,9 @@ class Session:
         the accuracy that will do, by default all that the session keeps; frames tell the tolerance that they
         have. With `latest` a slow reader skips to the newest key frame, whose `left_out` tells what it
         missed. In a `region` (a Region) the accuracy is exactly what was asked for, at least twice what
-        is kept, and coarser elsewhere: frames tell the tolerances of their nodes. Raises CleaveError
+        is kept, and coarser elsewhere: frames tell the tolerances of their nodes. With `surface` they
+        tell only of nodes that surfaces are drawn from (Frame.visible), at least twice as coarsely as
+        the session keeps them. Raises CleaveError
         (FAILED_PRECONDITION) for more than is kept, SimulationFailed after the last frame of a run that failed.
         """
         mesh = mesh or self.mesh()
@@ -114,6 +117,8 @@ class Session:
                 request.rung = rung_number(rung)
             if tolerance is not None:
                 request.tolerance = tolerance
+            if surface:
+                request.view = frame_pb2.FRAME_VIEW_SURFACE
             if region is not None:
                 region.put_into(request.region)
             if stop_frame is not None:
@@ -133,7 +138,7 @@ class Session:
                     if event == "start" and decoder is None:
                         given = message.start.tolerance
                         decoder = FrameDecoder(
-                            message.start.header, mesh.positions, mesh.edges()
+                            message.start.header, mesh.positions, mesh.edges(), tets=mesh.tets
                         )
                         kept = given - decoder.header.tolerance if region is not None else 0.0
                     elif event == "events":
@@ -170,6 +175,7 @@ class Session:
                                 given,
                                 None if region is None else decoder.tolerances + kept,
                                 left_out,
+                                None if decoder.visible is None else decoder.visible.copy(),
                             )
                         pieces.follow(told)
                         broken.Clear()

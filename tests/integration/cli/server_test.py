@@ -67,6 +67,16 @@ class Server(CliTest):
         self.assertEqual(code, 7, errors)
         self.assertIn("another accuracy", errors)
         self.assertEqual(self.ask("watch", "fine", "--rung", "finest")[0], 2)
+        seen = self.folder / "seen"
+        code, _, errors = self.ask("watch", "fine", "--surface", "--out", seen)
+        self.assertEqual(code, 0, errors)
+        self.assertIn("(standard)", errors)
+        for made in ("ply", "obj", "vtu"):
+            self.assertEqual(cleave("export", seen, "--format", made, "--last", "1")[0], 0)
+        for made in ("vtu-volume", "bake-pc2"):
+            code, _, errors = cleave("export", seen, "--format", made)
+            self.assertEqual(code, 7, errors)
+            self.assertIn("surface view", errors)
         region = ("watch", "fine", "--rung", "standard", "--region-node", 0, "--region-node", 3)
         code, output, errors = self.ask(*region, "--outside", "preview", "--json")
         self.assertEqual(code, 0, errors)
