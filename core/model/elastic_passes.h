@@ -85,12 +85,13 @@ class ElasticTerm : public Shape<T>::Term {
            fibres_.bytes() + shape_.bytes();
   }
 
-  bool ChooseBranches(const NodalVector& displacements) override {
+  bool ChooseBranches(const NodalVector& displacements, BranchChoice choice) override {
     if constexpr (Fibres<T>::kPresent) {
+      if (choice == BranchChoice::kAccepted) return false;  // the trial was here
       std::atomic<bool> changed = false;
       ForEachBatch(tets_, [&](int64_t begin, int64_t end) {
         for (int64_t b = begin; b < end; ++b) {
-          if (fibres_.ChooseSigns(b, DeformationOf(b, displacements).g)) changed = true;
+          if (fibres_.ChooseSigns(b, DeformationOf(b, displacements).g, choice)) changed = true;
         }
       });
       return changed;
@@ -100,7 +101,7 @@ class ElasticTerm : public Shape<T>::Term {
 
   double LeaveOut(std::span<uint8_t> asleep, const NodalVector& displacements) override {
     tets_.kept.reset();
-    ElasticTerm::ChooseBranches(displacements);
+    ElasticTerm::ChooseBranches(displacements, BranchChoice::kStart);
     KeepAwake(tets_, asleep);
     chunk_energy_.assign(static_cast<size_t>(tets_.pass_chunk_count()), 0.0);
     double energy = 0;

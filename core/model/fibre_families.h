@@ -62,7 +62,7 @@ class FibreFamilies {
   }
 
   // Whether that changed any sign.
-  bool ChooseSigns(int64_t b, const Matrix3<T>& g) {
+  bool ChooseSigns(int64_t b, const Matrix3<T>& g, BranchChoice choice) {
     Matrix3<T> f = g;
     for (int i = 0; i < 3; ++i) f(i, i) += 1.0;
     const Matrix3<T> cofactor = Cofactor(f);
@@ -74,6 +74,8 @@ class FibreFamilies {
       FibreBatch<T>& fibres = family[static_cast<size_t>(b)];
       T sign = Splat<T>(1);
       if (any_inverted) sign = inverted ? FibreSign(ComputeSvd(g), fibres.direction) : sign;
+      // A fibre that is turned over never has less energy than an upright one of its length.
+      if (choice != BranchChoice::kStart) sign = Max(sign, fibres.sign);
       if (!Any(sign != fibres.sign)) continue;
       fibres.sign = sign;
       changed = true;

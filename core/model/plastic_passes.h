@@ -32,8 +32,9 @@ class PlasticPasses final : public ElasticTerm<T, Law, Fibres, PlasticShape> {
   // Bars tets whose flow would leave kLargestPlasticRatio, or load fibres with more energy than it
   // takes: fibres that are pulled while the solid around them is crushed that way. In pairs of
   // energies that jump, as those of fibres that turn over.
-  bool ChooseBranches(const NodalVector& displacements) override {
-    bool changed = Elastic::ChooseBranches(displacements);
+  bool ChooseBranches(const NodalVector& displacements, BranchChoice choice) override {
+    bool changed = Elastic::ChooseBranches(displacements, choice);
+    if (choice == BranchChoice::kTrial) return changed;  // a bar adds energy
     std::atomic<bool> barred = false;
     ForEachBatch(this->tets_, [&](int64_t begin, int64_t end) {
       for (int64_t b = begin; b < end; ++b) {

@@ -25,6 +25,13 @@ using EdgeBlocks = std::vector<float>;
 
 inline size_t EdgeBlocksSize(int64_t edge_count) { return 9 * static_cast<size_t>(edge_count + 1); }
 
+// When branches of energies that jump are chosen.
+enum class BranchChoice {
+  kStart,     // of a time step: those of the displacements
+  kTrial,     // at a trial of a solve: only ones of less energy than those chosen before
+  kAccepted,  // where a solve starts or goes on: those without which it cannot
+};
+
 // An elastic energy over some tets or all. Ids are the solver's. Loops run on the caller's
 // TBB arena and give the same bits for any number of threads.
 class TetTerm {
@@ -36,8 +43,9 @@ class TetTerm {
 
   // Chooses the branch of an energy that jumps, at these displacements; it holds until the next
   // call. True where that changed any tet's energy.
-  virtual bool ChooseBranches(const NodalVector& displacements) {
+  virtual bool ChooseBranches(const NodalVector& displacements, BranchChoice choice) {
     (void)displacements;
+    (void)choice;
     return false;
   }
   // Adds -dPsi/dx (N) at displacements from rest (m) to `forces`; returns the energy, J.

@@ -146,9 +146,13 @@ double NewtonSolver::ElasticWork(const State& start, double dt, const NodalVecto
   }));
 }
 
-bool NewtonSolver::ChooseBranches(const NodalVector& displacements) {
+void NewtonSolver::BeginStep(const NodalVector& displacements) {
+  ChooseBranches(displacements, BranchChoice::kStart);
+}
+
+bool NewtonSolver::ChooseBranches(const NodalVector& displacements, BranchChoice choice) {
   bool changed = false;
-  for (const auto& term : model_.tet_terms) changed |= term->ChooseBranches(displacements);
+  for (const auto& term : model_.tet_terms) changed |= term->ChooseBranches(displacements, choice);
   return changed;
 }
 
@@ -227,7 +231,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
 
   {
     ScopedTimer timer(report.assembly_seconds);
-    ChooseBranches(displacements);
+    ChooseBranches(displacements, BranchChoice::kAccepted);
     Evaluate(start, dt, displacements);
     initial_elastic_energy_ = elastic_energy_;
     initial_energy_ = energy_;
@@ -278,11 +282,16 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     double share = 1;
     bool accepted = false;
     bool at_rounding = false;
+    branched = false;
     for (int backtrack = 0; backtrack < kMaxBacktracks; ++backtrack, share /= 2) {
       ForAll([&](int64_t begin, int64_t end) {
         for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
           trial_[node] = displacements[node] + share * search_[node];
       });
+      // A branch is left for a lower one only: where the minimum of each lies in the domain of the
+      // other, as of fibres that are crushed, a solve that went by domains alone had no end. What
+      // was turned over goes through no length on its way back, where its own branch has an edge.
+      branched |= ChooseBranches(trial_, BranchChoice::kTrial);
       Evaluate(start, dt, trial_);
       accepted = energy_ <= energy + kArmijo * share * slope_;
       if (accepted) break;
@@ -302,9 +311,10 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       last_share = share;
       last_norm = norm;
       displacements.swap(trial_);
-      // Energies of two branches are not compared: the next iteration starts from the new one.
-      branched = ChooseBranches(displacements);
-      if (branched) Evaluate(start, dt, displacements);
+      if (ChooseBranches(displacements, BranchChoice::kAccepted)) {
+        branched = true;
+        Evaluate(start, dt, displacements);
+      }
       continue;
     }
     Evaluate(start, dt, displacements);

@@ -40,6 +40,10 @@ class NewtonSolver {
   // coordinate of the others is given.
   void SetRuns(std::span<const std::array<int64_t, 2>> runs);
 
+  // Chooses the branches of energies that jump; to be called before the first Solve of a time step,
+  // at the displacements (m) that it starts from. Solves leave them for lower ones only.
+  void BeginStep(const NodalVector& displacements);
+
   // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
   // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
   // summed norms of inertial, elastic and external forces and the last step moved no coordinate by
@@ -82,7 +86,7 @@ class NewtonSolver {
   // Sets `search_` by a linear solve; returns whether it leads downhill.
   absl::StatusOr<bool> FindSearchDirection(const StopFlag& stop, StepReport& report);
   // Of all terms; true where any changed.
-  bool ChooseBranches(const NodalVector& displacements);
+  bool ChooseBranches(const NodalVector& displacements, BranchChoice choice);
   absl::Status NotConverged(double relative_residual) const;
 
   const Model& model_;

@@ -140,6 +140,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, state.released, end, displacements_);
+  newton_.BeginStep(displacements_);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
   // Motions move the body as it was, then it breaks: that way work and fracture energy match. What
   // integration loses is the elastic energy beyond its tangent, the squared change of velocity and

@@ -63,7 +63,7 @@ TEST_P(EdgeForm, IsTheForceOfTheStress) {
                                         FractureStress::kTotal);
       NodalVector forces(4, Splat(0));
       std::vector<Matrix3d> stress(1, Matrix3d::Zero());
-      term->ChooseBranches(displacements);
+      term->ChooseBranches(displacements, BranchChoice::kStart);
       term->AddForces(displacements, forces);
       term->AddEffectiveStress(displacements, stress);
       Eigen::Matrix<double, 3, 4> shape;  // gradients of the shape functions

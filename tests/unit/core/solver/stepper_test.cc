@@ -182,5 +182,41 @@ TEST(Stepper, AStepThatDoesNotConvergeIsHalved) {
   }
 }
 
+// Gravity pushes the tip of a tet through its base. While its fibre counts as upright the tip comes
+// to rest below the base, and while it counts as turned over, above.
+TEST(Stepper, AFibreThatTurnsOverAndBackDoesNotKeepASolveFromItsEnd) {
+  struct Case {
+    Vec3 fibre, gravity;  // m/s^2
+  };
+  constexpr Case kCases[] = {{{0.7, -0.1, 0.2}, {4000, 0, -6000}},
+                             {{-0.9, -0.7, 0.4}, {-1000, 0, -8000}}};
+  TetMesh mesh;
+  mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.tets = {{0, 1, 2, 3}};
+  const double dt = 0.02;
+  for (const Case& crushed : kCases) {
+    Scene scene = TightScene(1e5, 0.4, 1000, dt);
+    scene.quality.newton_iterations = 30;
+    scene.quality.residual_tolerance = 1e-6;
+    scene.quality.step_tolerance = 1e-5;
+    FibreFamily family;
+    family.stiffness = 1e7;
+    family.direction = ConstantDirection{crushed.fibre};
+    scene.materials[0].fibres.push_back(family);
+    AddBoxSet(scene, "base", {-1, -1, -1}, {2, 2, 1e-9});
+    AddMotion(scene, "base");
+    scene.gravity = crushed.gravity;
+    const Model model = *BuildModel(scene, mesh);
+    State state = InitialState(scene, mesh, model);
+    Stepper stepper(model);
+    const StopFlag stop;
+    StepReport report;
+    for (int step = 0; step < 20; ++step) {
+      const absl::Status status = stepper.Step(dt * step, dt * (step + 1), stop, state, report);
+      ASSERT_TRUE(status.ok()) << "step " << step << ": " << status;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cleave
