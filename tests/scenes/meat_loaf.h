@@ -13,8 +13,8 @@ namespace cleave {
 absl::StatusOr<Demonstration> MakeMeatLoaf(const Setting& setting);
 
 // first_bread and first_meat: frames in which 0.1 % of the edges wholly in them had broken;
-// stretch_ratio: of the median failure stretch of meat over bread, of edges within 45 degrees of
-// the pull, and stretch_ratio_all, of all; broken_bread, broken_meat: shares at the end.
+// stretch_ratio: the median failure stretch of meat over that of bread; broken_bread, broken_meat:
+// shares at the end.
 Metrics MeasureMeatLoaf(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
 

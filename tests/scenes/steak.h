@@ -18,8 +18,8 @@ absl::StatusOr<Demonstration> MakeSteak(const Setting& setting);
 Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
                      const Run& run);
 
-// A(a) counts by smoothed normals: those of single facets scatter so much that a crack along the
-// fibres has about 0.3, and one across them 0.75.
+// A(a) counts by the normals of single facets, which scatter: of a crack along the fibres they give
+// 0.3 to 0.45, of one across them 0.75.
 std::vector<Criterion> SteakCriteria();
 
 }  // namespace cleave
