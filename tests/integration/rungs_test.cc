@@ -236,13 +236,18 @@ TEST(RungsTest, WhoWantsTheLatestSkipsToTheNewestKeyFrame) {
   EXPECT_EQ(response.gap().last_frame(), kNewest - 1);
   context.TryCancel();
 
+  // Of a rung whose frames are there as well: before, a viewer of it is not behind.
   FrameStreamOptions options = Asking(Rung::kPreview);
+  FrameStream whole(*client, options);
+  EXPECT_EQ(TakeAll(whole).size(), all.size());
   options.latest = true;
   FrameStream stream(*client, options);
   auto first = stream.Next();
   ASSERT_TRUE(first.ok() && first->has_value());
   ASSERT_TRUE((*first)->gap.has_value());
-  EXPECT_EQ((*first)->gap->last_frame, (*first)->header.frame - 1);
+  EXPECT_EQ((*first)->gap->first_frame, 0);
+  EXPECT_EQ((*first)->gap->last_frame, kNewest - 1);
+  EXPECT_EQ((*first)->header.frame, kNewest);
   EXPECT_EQ(TakeAll(stream).back(), UndisturbedPreview().back());
 }
 
