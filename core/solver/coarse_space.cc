@@ -13,8 +13,6 @@ constexpr int64_t kPatchNodes = 200;
 constexpr int64_t kMostPatches = 64;
 constexpr int64_t kFewestPatches = 4;
 
-constexpr Double4 kUnit[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
-
 inline Double4 ToDouble(Double4 v) { return v; }
 inline Double4 ToDouble(Float4 v) { return Widen(v); }
 
@@ -72,6 +70,7 @@ bool CoarseSpace::Prepare(const StiffnessMatrix& matrix, const NodalVector& posi
 
 // How a node follows the motions of its patch: three shifts by 1 m, three turns by 1 rad.
 void CoarseSpace::SetModes(int64_t node, Double4 modes[6]) const {
+  constexpr Double4 kUnit[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
   const auto n = static_cast<size_t>(node);
   for (int k = 0; k < 3; ++k) {
     modes[k] = free_[n] ? kUnit[k] : Splat(0);
@@ -92,21 +91,9 @@ void CoarseSpace::AddPulls(int64_t node, int64_t other_patch, const Double4 forc
   }
 }
 
-void CoarseSpace::AddTurning(int64_t patch, Double4 arm, const Double4 columns[3]) {
-  for (int k = 0; k < 3; ++k) {
-    const Double4 turn = Cross(arm, Times(columns, Cross(kUnit[k], arm)));
-    for (int axis = 0; axis < 3; ++axis)
-      matrix_(6 * patch + 3 + axis, 6 * patch + 3 + k) += turn[axis];
-  }
-}
-
 // What every motion of a patch and of its neighbours pulls with at the patch.
 void CoarseSpace::FillRows(const StiffnessMatrix& matrix, int64_t patch) {
   const auto [first, last] = NodesOf(patch);
-  const auto all_free = [this](int64_t node) {
-    const Int64x4& free = free_[static_cast<size_t>(node)];
-    return (free[0] & free[1] & free[2]) != 0;
-  };
   for (int64_t node = first; node < last; ++node) {
     Double4 modes[6], theirs[6], own[6], other[6];
     SetModes(node, modes);
@@ -114,17 +101,8 @@ void CoarseSpace::FillRows(const StiffnessMatrix& matrix, int64_t patch) {
     matrix.ForEachBlock(node, [&, begin = first, end = last](int64_t neighbour,
                                                              const float* block) {
       const Double4 columns[3] = {LoadFloats(block), LoadFloats(block + 3), LoadFloats(block + 6)};
-      const bool inside = neighbour >= begin && neighbour < end;
-      if (inside && all_free(node) && all_free(neighbour)) {
-        // Only the turns of the patch strain such an edge, and it is seen from both of its ends.
-        if (neighbour > node)
-          AddTurning(patch,
-                     arms_[static_cast<size_t>(node)] - arms_[static_cast<size_t>(neighbour)],
-                     columns);
-        return;
-      }
       SetModes(neighbour, theirs);
-      if (inside) {
+      if (neighbour >= begin && neighbour < end) {
         for (int k = 0; k < 6; ++k) own[k] += Times(columns, modes[k] - theirs[k]);
         return;
       }

@@ -65,8 +65,6 @@ class CoarseSpace {
 
   // Adds the forces (N) with which a node pulls at its patch for each motion of a patch.
   void AddPulls(int64_t node, int64_t other_patch, const Double4 forces[6]);
-  // Adds what turning a patch does to an edge inside it, that long (m) and as stiff (N/m).
-  void AddTurning(int64_t patch, Double4 arm, const Double4 columns[3]);
   void SetModes(int64_t node, Double4 modes[6]) const;
   // [first, end)
   std::pair<int64_t, int64_t> NodesOf(int64_t patch) const {

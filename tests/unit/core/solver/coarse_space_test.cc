@@ -4,6 +4,9 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "core/mesh/incidence.h"
@@ -13,20 +16,13 @@
 namespace cleave {
 namespace {
 
-// A bar of cells whose nodes are numbered along it, with springs of about one stiffness in its
-// edges, so soft in inertia that a push crosses it in a step.
+// A bar of cells whose nodes are numbered along it, linear elastic with Lame's constants of 1 and 2
+// Pa, so soft in inertia that a push crosses it in a step. Blocks of its edges are not symmetric.
 class CoarseSpaceTest : public ::testing::Test {
  protected:
   CoarseSpaceTest() : matrix_(incidence_.edges, mesh_.node_count()) {
-    EdgeBlocks& blocks = matrix_.Clear();
     std::srand(2);
-    for (int64_t edge = 0; edge < incidence_.edge_count(); ++edge) {
-      const auto& [a, b] = incidence_.edges[static_cast<size_t>(edge)];
-      const Eigen::Vector3f along = (Position(b) - Position(a)).normalized().cast<float>();
-      const Eigen::Matrix3f random = 0.1f * Eigen::Matrix3f::Random();
-      Eigen::Map<Eigen::Matrix3f>(blocks.data() + 9 * edge) =
-          along * along.transpose() + random * random.transpose();
-    }
+    AddElasticity(matrix_.Clear());
     inertia_.assign(static_cast<size_t>(mesh_.node_count()), 1e-4);
     matrix_.Finish(inertia_);
     for (const Vec3& position : mesh_.rest_positions) positions_.push_back(ToDouble4(position));
@@ -40,6 +36,30 @@ class CoarseSpaceTest : public ::testing::Test {
     for (const FixedNode& fixed : fixed_) {
       Double4& force = rhs_[static_cast<size_t>(fixed.node)];
       force = fixed.axes ? Splat(0) : force;
+    }
+  }
+
+  void AddElasticity(EdgeBlocks& blocks) const {
+    for (size_t tet = 0; tet < mesh_.tets.size(); ++tet) {
+      const std::array<int32_t, 4>& nodes = mesh_.tets[tet];
+      Eigen::Matrix3d edges;
+      for (int k = 0; k < 3; ++k)
+        edges.col(k) = Position(nodes[static_cast<size_t>(k) + 1]) - Position(nodes[0]);
+      const double volume = std::abs(edges.determinant()) / 6;
+      Eigen::Matrix<double, 4, 3> gradients;
+      gradients.bottomRows<3>() = edges.inverse();
+      gradients.row(0) = -gradients.bottomRows<3>().colwise().sum();
+      for (size_t k = 0; k < 6; ++k) {
+        const auto edge = static_cast<size_t>(incidence_.tet_edges[tet][k]);
+        const auto [a, b] = incidence_.edges[edge];
+        const auto row_of = [&](int32_t node) {
+          return std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
+        };
+        const Eigen::Vector3d to_a = gradients.row(row_of(a)), to_b = gradients.row(row_of(b));
+        const Eigen::Matrix3d block = to_a * to_b.transpose() + 2 * to_b * to_a.transpose() +
+                                      2 * to_a.dot(to_b) * Eigen::Matrix3d::Identity();
+        Eigen::Map<Eigen::Matrix3f>(blocks.data() + 9 * edge) -= (volume * block).cast<float>();
+      }
     }
   }
 
