@@ -202,6 +202,26 @@ class PythonClientTest(unittest.TestCase):
         with self.assertRaisesRegex(CleaveError, "below twice"):
             next(session.frames(mesh=mesh, rung="fine", region=Region((0,))))
 
+    def test_a_surface_view_tells_of_nodes_that_surfaces_need(self):
+        session = self.client.create_session("surface", first_steps.bar(), rung="fine")
+        self.addCleanup(session.delete)
+        session.run()
+        mesh = session.mesh()
+        kept = list(session.frames(mesh=mesh))
+        seen = list(session.frames(mesh=mesh, rung="standard", surface=True))
+        self.assertEqual(len(seen), len(kept))
+        for one, other in zip(seen, kept):
+            np.testing.assert_array_equal(one.broken_edges, other.broken_edges)
+            error = np.abs(one.positions - other.positions).max(axis=1)
+            self.assertTrue((error[one.visible] <= one.tolerance - other.tolerance).all())
+            self.assertTrue(np.isnan(one.positions[~one.visible]).all())
+        self.assertIsNone(kept[0].visible)
+        self.assertGreater(seen[-1].visible.sum(), seen[0].visible.sum())
+        self.assertLess(seen[0].visible.sum(), len(mesh.positions))
+        fine = EmbeddedVertices(mesh.positions, mesh.tets, mesh.positions[:1])
+        with self.assertRaisesRegex(ValueError, "surface view"):
+            fine.move(seen[0].positions, seen[0].broken_edges)
+
     def test_events_of_a_run_folder_are_read(self):
         place = '"rest":[1,2,3],"position":[1.5,2,3],"energy":0.25}'
         part = '"volume":0.5,"node_count":4,"first_node":%d,'

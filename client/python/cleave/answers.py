@@ -20,7 +20,7 @@ class Frame:
     tolerance: float = 0.0  # m, largest error of a coordinate against the simulation
     tolerances: object = None  # the same of each node, in frames with a region of interest
     left_out: tuple = None  # (first, last) frame that was left out before it, with `latest`
-    visible: object = None  # of each node, in frames of a surface view: whether its position counts
+    visible: object = None  # of each node, in frames of a surface view; other nodes are at NaN
 
 
 @dataclasses.dataclass(frozen=True)

@@ -71,10 +71,18 @@ class EmbeddedVertices:
 
     def move(self, positions, broken_edges):
         """Where the vertices are (n x 3, m) when nodes are at `positions` (m) and `broken_edges`
-        (ascending ids, as frames have them) are broken. Frames come in order; some may be left out."""
+        (ascending ids, as frames have them) are broken. Frames come in order; some may be left out.
+        Raises ValueError for arrays of other shapes, positions that are not finite, and edges that are
+        not there."""
         positions = np.asarray(positions, "f8")
         if positions.shape != self._rest.shape:
             raise ValueError(f"positions: shape {positions.shape} is not {self._rest.shape}")
+        lost = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+        if len(lost) > 0:
+            raise ValueError(
+                f"positions[{lost[0]}]: {positions[lost[0]]} is not finite; a fine mesh needs all nodes, "
+                "which frames of a surface view have not"
+            )
         broken = np.asarray(broken_edges, "i8")
         if len(broken) > 0 and not 0 <= broken.min() <= broken.max() < len(self._edges):
             raise ValueError(f"broken_edges: an edge is outside [0, {len(self._edges)})")

@@ -4,6 +4,7 @@ import time
 import uuid
 
 import grpc
+import numpy as np
 
 from cleave.answers import Frame
 from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay
@@ -169,7 +170,7 @@ class Session:
                                 decoder.frame,
                                 decoder.time,
                                 decoder.fragments,
-                                decoder.positions.copy(),
+                                _known_positions(decoder),
                                 decoder.broken_edges.copy(),
                                 pieces.begin(told),
                                 given,
@@ -193,6 +194,13 @@ class Session:
             if attempt >= ATTEMPTS:
                 raise CleaveError(grpc.StatusCode.UNAVAILABLE, "the frame stream was cut")
             time.sleep(delay(attempt))
+
+
+def _known_positions(decoder):
+    positions = decoder.positions.copy()
+    if decoder.visible is not None:
+        positions[~decoder.visible] = np.nan
+    return positions
 
 
 def _left_out(gap, header, decoder):

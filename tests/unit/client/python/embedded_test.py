@@ -78,6 +78,10 @@ class EmbeddedVerticesTest(unittest.TestCase):
     def test_other_arrays_are_refused(self):
         with self.assertRaisesRegex(ValueError, "positions: shape"):
             self.fine.move(self.rest[1:], [])
+        hidden = self.rest.copy()
+        hidden[3] = np.nan
+        with self.assertRaisesRegex(ValueError, r"positions\[3\]: .* surface view"):
+            self.fine.move(hidden, [])
         with self.assertRaisesRegex(ValueError, "broken_edges: an edge is outside"):
             self.fine.move(self.rest, [len(self.edges)])
         with self.assertRaisesRegex(ValueError, "vertices: shape"):
