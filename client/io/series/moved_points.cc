@@ -10,7 +10,9 @@ void MovedPoints::Advance(const SurfaceTopology& topology, bool changed,
                           bool with_velocities) {
   if (with_velocities && started_) {
     if (changed) {
-      motion_.Move(topology, node_positions_, previous_points_);
+      // By a copy: what nodes remember of their deformation is not to depend on who asks for
+      // velocities.
+      PointMotion(motion_).Move(topology, node_positions_, previous_points_);
     } else {
       std::swap(previous_points_, points_);
     }

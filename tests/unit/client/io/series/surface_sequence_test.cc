@@ -61,6 +61,24 @@ TEST(SurfaceSequence, ABreakOpensInsideFacesAndThePiecesKeepTheirIds) {
   EXPECT_TRUE(CheckShownSurface(sequence.surface()).ok());
 }
 
+TEST(SurfaceSequence, WhereItsPointsAreIsTheSameWithVelocitiesAndWithout) {
+  const TetMesh mesh = TwoTets();
+  SurfaceSequence without(mesh, {}), with(mesh, {.velocities = true});
+  Frame frame = AtRest(mesh);
+  for (int turns = 0; turns < 3; ++turns) {
+    SCOPED_TRACE(turns);
+    // A quarter turn a frame, in the second of which the tip loses the one tet that it had.
+    if (turns > 0) {
+      for (Vec3& position : frame.positions) position = {position[0], -position[2], position[1]};
+      frame.time += 0.1;
+      frame.broken_edges = EdgesAtTip(mesh);
+    }
+    ASSERT_TRUE(without.Advance(frame).ok());
+    ASSERT_TRUE(with.Advance(frame).ok());
+    EXPECT_EQ(with.surface().points, without.surface().points);
+  }
+}
+
 TEST(SurfaceSequence, APieceKeepsItsIdInItsLargerPart) {
   // Node 0 comes off: the rest of the body stays piece 0 although its smallest node is another.
   const TetMesh mesh = TwoTets();
