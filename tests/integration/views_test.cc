@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client/cpp/client.h"
@@ -33,6 +34,19 @@ FrameStreamOptions Looking(std::optional<Rung> rung, const v1::RegionOfInterest&
   return options;
 }
 
+// As Asking, with what positions are decoded with.
+FrameStreamOptions Decoding(Client& client) {
+  FrameStreamOptions options = Asking(std::nullopt);
+  absl::StatusOr<TetMesh> mesh =
+      DownloadMesh(client, client.GetSession(options.session)->scene().mesh().asset(), {});
+  EXPECT_TRUE(mesh.ok()) << mesh.status();
+  if (!mesh.ok()) return options;
+  options.edges = BuildIncidence(*mesh).edges;
+  options.rest_positions = std::move(mesh->rest_positions);
+  options.tets = std::move(mesh->tets);
+  return options;
+}
+
 TEST(ViewsTest, ARegionIsAsAccurateAsAskedAndOtherPiecesAreCoarser) {
   constexpr int64_t kLast = 150;  // by then the bar is broken
   TestServer server;
@@ -43,12 +57,7 @@ TEST(ViewsTest, ARegionIsAsAccurateAsAskedAndOtherPiecesAreCoarser) {
   request.set_rung(v1::RUNG_FINE);
   ASSERT_TRUE(client->CreateSession(request).ok());
   RunToEnd(*client, "bar");
-  const absl::StatusOr<TetMesh> mesh =
-      DownloadMesh(*client, client->GetSession("sessions/bar")->scene().mesh().asset(), {});
-  ASSERT_TRUE(mesh.ok()) << mesh.status();
-  FrameStreamOptions options = Asking(std::nullopt);
-  options.rest_positions = mesh->rest_positions;
-  options.edges = BuildIncidence(*mesh).edges;
+  FrameStreamOptions options = Decoding(*client);
   FrameStream kept(*client, options);
   options.rung = Rung::kStandard;
   options.region = WithNode(0);
@@ -108,13 +117,7 @@ TEST(ViewsTest, ASurfaceViewIsSharedAndTellsWhatSurfacesNeed) {
   const std::unique_ptr<Client> client = server.Connect();
   CreateLossless(*client);
   RunToEnd(*client, "bar");
-  const absl::StatusOr<TetMesh> mesh =
-      DownloadMesh(*client, client->GetSession("sessions/bar")->scene().mesh().asset(), {});
-  ASSERT_TRUE(mesh.ok()) << mesh.status();
-  FrameStreamOptions options = Asking(std::nullopt);
-  options.rest_positions = mesh->rest_positions;
-  options.edges = BuildIncidence(*mesh).edges;
-  options.tets = mesh->tets;
+  FrameStreamOptions options = Decoding(*client);
   FrameStream kept(*client, options);
   options.surface = true;
   FrameStream finest(*client, options);

@@ -49,6 +49,16 @@ class CliTest(unittest.TestCase):
         path.write_text(text)
         return path
 
+    def serve(self):
+        """Starts a server that ends with the test; (its process, its address)."""
+        address = f"unix:{self.folder}/socket"
+        with open(self.folder / "log", "w") as log:
+            server = subprocess.Popen([CLEAVED, "--listen", address, "--data", self.folder / "data"],
+                                      stdout=log, stderr=log)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.terminate)
+        return server, address
+
 
 def main():
     """Runs the tests of the file that is run."""

@@ -2,10 +2,9 @@
 
 import json
 import struct
-import subprocess
 import zlib
 
-from cleave_cli import BLOCK, CLEAVED, CliTest, cleave, main
+from cleave_cli import BLOCK, CliTest, cleave, main
 
 
 # A stroke across the block at x = 0.23, to half of its depth.
@@ -114,12 +113,7 @@ class Impurities(CliTest):
         self.assertEqual(cleave("impurity", scene)[0], 3)
 
     def test_server_gives_the_same_numbers(self):
-        address = f"unix:{self.folder}/socket"
-        with open(self.folder / "log", "w") as log:
-            server = subprocess.Popen([CLEAVED, "--listen", address, "--data", self.folder / "data"],
-                                      stdout=log, stderr=log)
-        self.addCleanup(server.wait)
-        self.addCleanup(server.terminate)
+        _, address = self.serve()
         ask = ("impurity", self.scene(BLOCK % 1), "--layer", json.dumps(STROKE), "--json")
         code, output, errors = cleave(*ask, "--server", address)
         self.assertEqual(code, 0, errors)

@@ -2,9 +2,8 @@
 
 import json
 import re
-import subprocess
 
-from cleave_cli import BLOCK, CLEAVED, CliTest, cleave, main
+from cleave_cli import BLOCK, CliTest, cleave, main
 
 
 class Probes(CliTest):
@@ -62,12 +61,7 @@ class Probes(CliTest):
             self.assertEqual(code, 0, errors)
 
     def test_server_gives_the_same_numbers(self):
-        address = f"unix:{self.folder}/socket"
-        with open(self.folder / "log", "w") as log:
-            server = subprocess.Popen([CLEAVED, "--listen", address, "--data", self.folder / "data"],
-                                      stdout=log, stderr=log)
-        self.addCleanup(server.wait)
-        self.addCleanup(server.terminate)
+        _, address = self.serve()
         pull = ("probe", "raw_meat", "--direction", "1,1,0", "--format", "json")
         code, output, errors = cleave(*pull, "--server", address)
         self.assertEqual(code, 0, errors)

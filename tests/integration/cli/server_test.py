@@ -1,22 +1,14 @@
 """Verbs that ask a server: submit, step, watch, list, plan, cancel, info."""
 
 import json
-import subprocess
 
-from cleave_cli import BLOCK, CLEAVED, CliTest, cleave, main
+from cleave_cli import BLOCK, CliTest, cleave, main
 
 
 class Server(CliTest):
     def setUp(self):
         super().setUp()
-        self.address = f"unix:{self.folder}/socket"
-        log = open(self.folder / "log", "w")
-        self.addCleanup(log.close)
-        self.server = subprocess.Popen(
-            [CLEAVED, "--listen", self.address, "--data", self.folder / "data"],
-            stdout=log, stderr=log)
-        self.addCleanup(self.server.wait)
-        self.addCleanup(self.server.terminate)
+        self.server, self.address = self.serve()
 
     def ask(self, verb, *arguments):
         return cleave(verb, *arguments, "--server", self.address)
