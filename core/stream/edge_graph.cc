@@ -11,10 +11,7 @@ int32_t PlaceOf(int32_t slot) { return slot < 0 ? ~slot : slot; }
 
 EdgeGraph::EdgeGraph(const NodeOrder& order, std::span<const std::array<int32_t, 2>> edges) {
   const size_t count = order.nodes.size();
-  std::vector<int32_t> places(count);
-  for (size_t place = 0; place < count; ++place) {
-    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
-  }
+  const std::vector<int32_t> places = order.PlacesOfNodes();
   offsets_.assign(count + 1, 0);
   for (const std::array<int32_t, 2>& edge : edges) {
     for (const int32_t node : edge) {

@@ -30,11 +30,7 @@ InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const Str
 }
 
 void InterpolationEncoder::SetRegion(const Region& region, int32_t shift) {
-  const std::vector<int32_t>& nodes = predictor_.order().nodes;
-  std::vector<int32_t> places(nodes.size());
-  for (size_t place = 0; place < nodes.size(); ++place) {
-    places[static_cast<size_t>(nodes[place])] = static_cast<int32_t>(place);
-  }
+  const std::vector<int32_t> places = predictor_.order().PlacesOfNodes();
   region_ = PlacedRegion{.places = {}, .box = region.box, .shift = static_cast<uint8_t>(shift)};
   for (const int32_t node : region.nodes) {
     region_->places.push_back(places[static_cast<size_t>(node)]);

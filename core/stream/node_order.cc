@@ -8,6 +8,14 @@
 
 namespace cleave {
 
+std::vector<int32_t> NodeOrder::PlacesOfNodes() const {
+  std::vector<int32_t> places(nodes.size());
+  for (size_t place = 0; place < nodes.size(); ++place) {
+    places[static_cast<size_t>(nodes[place])] = static_cast<int32_t>(place);
+  }
+  return places;
+}
+
 size_t NodeOrder::GroupOf(int32_t place) const {
   return static_cast<size_t>(std::upper_bound(group_begins.begin(), group_begins.end(), place) -
                              group_begins.begin()) -

@@ -26,6 +26,7 @@ struct NodeOrder {
 
   int64_t groups() const { return static_cast<int64_t>(group_begins.size()) - 1; }
   size_t GroupOf(int32_t place) const;
+  std::vector<int32_t> PlacesOfNodes() const;  // the inverse of `nodes`
 };
 
 // Precondition: coordinates are finite; at least one node.

@@ -42,10 +42,9 @@ PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
     return;
   }
   const size_t count = order.nodes.size();
-  std::vector<int32_t> places(count);
+  const std::vector<int32_t> places = order.PlacesOfNodes();
   stencils_.resize(count);
   for (size_t place = 0; place < count; ++place) {
-    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
     stencils_[place] = unbroken[static_cast<int32_t>(place)].places;
   }
   edges_.reserve(edges.size());

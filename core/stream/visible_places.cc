@@ -23,14 +23,6 @@ bool IsApart(uint8_t mask) {
   return *std::max_element(joined.begin(), joined.end()) > 0;
 }
 
-std::vector<int32_t> PlacesOfNodes(const NodeOrder& order) {
-  std::vector<int32_t> places(order.nodes.size());
-  for (size_t place = 0; place < places.size(); ++place) {
-    places[static_cast<size_t>(order.nodes[place])] = static_cast<int32_t>(place);
-  }
-  return places;
-}
-
 // Marks the places of faces that only one tet has.
 std::vector<uint8_t> MarkBoundary(size_t count, std::span<const std::array<int32_t, 4>> tets) {
   // Faces by their smallest place; of each the two others in order.
@@ -94,7 +86,7 @@ VisiblePlaces::VisiblePlaces(const NodeOrder& order, std::span<const std::array<
   for (size_t edge = 0; edge < edges.size(); ++edge) offsets_[edge + 1] += offsets_[edge];
   std::vector<int32_t> next(offsets_.begin(), offsets_.end() - 1);
   for_edges([&](size_t edge, int32_t tet) { edge_tets_[static_cast<size_t>(next[edge]++)] = tet; });
-  const std::vector<int32_t> places = PlacesOfNodes(order);
+  const std::vector<int32_t> places = order.PlacesOfNodes();
   tets_.reserve(tets.size());
   for (const std::array<int32_t, 4>& tet : tets) {
     std::array<int32_t, 4>& placed = tets_.emplace_back();
