@@ -13,6 +13,8 @@ TEST(UniformDraw, MatchesTheReferenceTable) {
   EXPECT_NEAR(UniformDraw(0, RandomStream::kNodeNoise, 0, 1), 0.9595864543180406, 1e-15);
   EXPECT_NEAR(UniformDraw(1, RandomStream::kEdgeDraw, 3, 7), 0.1014178617419857, 1e-15);
   EXPECT_NEAR(UniformDraw(12345, RandomStream::kEdgeDraw, 0, 99999), 0.8540611102083009, 1e-15);
+  EXPECT_NEAR(UniformDraw(uint64_t{1} << 63, RandomStream::kNodeNoise, 5, 0), 0.17037578527001213,
+              1e-15);
 }
 
 TEST(UniformDraw, HasMeanOneHalfAndTheVarianceOfAUniform) {

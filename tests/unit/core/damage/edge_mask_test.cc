@@ -77,5 +77,23 @@ TEST(EdgeThresholds, AreTheWeakestAmongAnEdgesTets) {
               ElementsAre(infinite, infinite, infinite, 5, 5, 5, 5, 5, 5));
 }
 
+// Of the largest factor among an edge's records, 1 + (R - 1) cos^2.
+TEST(EdgeThresholds, AreHigherAlongADirectionOfStrength) {
+  TetMesh mesh;
+  mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
+  const Incidence incidence = BuildIncidence(mesh);
+  const std::vector<double> strengths{10.0, 5.0};
+  const DirectionalStrength directional[] = {{0, {1, 0, 0}, 3}, {0, {0, 0.6, 0.8}, 2}};
+  // Edges in order: 0-1 0-2 0-3 1-2 1-3 1-4 2-3 2-4 3-4. The second tet has no direction, and an
+  // edge of both takes what is less.
+  const std::vector<double> thresholds = EdgeThresholds(mesh, incidence, strengths, directional);
+  const double expected[] = {30, 13.6, 16.4, 5, 5, 5, 5, 5, 5};
+  for (size_t edge = 0; edge < 9; ++edge) EXPECT_NEAR(thresholds[edge], expected[edge], 1e-12);
+  EXPECT_EQ(DirectionalStrengthFactor(1, 0.7), 1);
+  EXPECT_EQ(DirectionalStrengthFactor(3, 0), 1);
+  EXPECT_EQ(DirectionalStrengthFactor(3, -1), 3);
+}
+
 }  // namespace
 }  // namespace cleave

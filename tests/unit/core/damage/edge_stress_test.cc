@@ -126,7 +126,7 @@ TEST_F(EdgeStressTest, DoesNotChangeUnderRotation) {
   const std::vector<double> before = EdgeStresses(StressAggregation::kMean, positions_);
   const std::vector<double> after = EdgeStresses(StressAggregation::kMean, rotated);
   for (size_t edge = 0; edge < before.size(); ++edge)
-    EXPECT_NEAR(after[edge], before[edge], 1e-11 * 256);
+    EXPECT_NEAR(after[edge], before[edge], 1e-12 * 256);
 }
 
 TEST_F(EdgeStressTest, InvertedTetsCountAsZero) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/LU>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -81,22 +83,64 @@ TEST_F(ReferenceTet, KeepsTheShareOfStressOnUnbrokenEdges) {
 }
 
 TEST_F(ReferenceTet, FactorIsFrozenAndNeverRises) {
-  // Without edges 0 and 1 the tet would keep 0.62 of its stress, but it is at 0.2 already.
-  SetThresholds(3);
-  EdgeFracture fracture = Fracture();
-  std::string saved;
-  ByteWriter writer(saved);
-  writer.PutVector(std::vector<int32_t>{0});
-  writer.PutVector(std::vector<double>{0.2});
-  ByteReader reader(saved);
-  ASSERT_TRUE(fracture.Restore(reader).ok());
-  const PassResult result = fracture.BreakPass(kPositions, kStress);
-  EXPECT_THAT(result.broken_edges, ElementsAre(1));
-  EXPECT_THAT(result.changed_tets, IsEmpty());
-  EXPECT_EQ(fracture.damage_factors()[0], 0.2);
-  // Where no edge fails nothing moves, whatever the stress does.
-  EXPECT_THAT(fracture.BreakPass(mesh_.rest_positions, kStress).broken_edges, IsEmpty());
-  EXPECT_EQ(fracture.damage_factors()[0], 0.2);
+  // With an edge broken and at 0.2 already, it keeps that or nothing, whatever edges break.
+  struct Case {
+    EdgeMask mask;
+    double factor;
+  };
+  for (const Case& c :
+       {Case{3, 0.2}, Case{7, 0}, Case{9, 0.2}, Case{30, 0}, Case{56, 0.2}, Case{63, 0}}) {
+    SCOPED_TRACE(int{c.mask});
+    SetThresholds(c.mask);
+    EdgeFracture fracture = Fracture();
+    std::string saved;
+    ByteWriter writer(saved);
+    writer.PutVector(std::vector<int32_t>{std::countr_zero(c.mask)});
+    writer.PutVector(std::vector<double>{0.2});
+    ByteReader reader(saved);
+    ASSERT_TRUE(fracture.Restore(reader).ok());
+    const PassResult result = fracture.BreakPass(kPositions, kStress);
+    EXPECT_FALSE(result.broken_edges.empty());
+    EXPECT_EQ(result.changed_tets.size(), c.factor == 0 ? 1u : 0u);
+    EXPECT_EQ(fracture.damage_factors()[0], c.factor);
+    // Where no edge fails nothing moves, whatever the stress does.
+    EXPECT_THAT(fracture.BreakPass(mesh_.rest_positions, kStress).broken_edges, IsEmpty());
+    EXPECT_EQ(fracture.damage_factors()[0], c.factor);
+  }
+}
+
+// At rest the six edge stresses N.PN make a symmetric stress: one that all but unloads the edges
+// that stay.
+TEST_F(ReferenceTet, DiesWhereItWouldKeepLessThanAThousandth) {
+  const std::vector<Vec3>& rest = mesh_.rest_positions;
+  for (const double share : {1.1e-3, 0.9e-3}) {
+    SCOPED_TRACE(share);
+    Eigen::Matrix<double, 6, 6> rows;
+    Eigen::Matrix<double, 6, 1> wanted;
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      const auto [a, b] = incidence_.edges[static_cast<size_t>(k)];
+      const Eigen::Vector3d n = (Eigen::Vector3d(rest[static_cast<size_t>(b)].data()) -
+                                 Eigen::Vector3d(rest[static_cast<size_t>(a)].data()))
+                                    .normalized();
+      rows.row(k) << n[0] * n[0], n[1] * n[1], n[2] * n[2], 2 * n[0] * n[1], 2 * n[1] * n[2],
+          2 * n[2] * n[0];
+      wanted[k] = k == 0 ? 1 : share / (5 * (1 - share));
+    }
+    const Eigen::Matrix<double, 6, 1> p = rows.fullPivLu().solve(wanted);
+    Eigen::Matrix3d stress;
+    stress << p[0], p[3], p[5], p[3], p[1], p[4], p[5], p[4], p[2];
+    thresholds_.fill(kInfinite);
+    thresholds_[0] = 0.99;
+    EdgeFracture fracture = Fracture();
+    EXPECT_FALSE(fracture.BreakPass(rest, {&stress, 1}).broken_edges.empty());
+    if (share < 1e-3) {
+      EXPECT_EQ(fracture.damage_factors()[0], 0);
+      EXPECT_EQ(fracture.broken_edge_count(), 6);  // orphans included
+    } else {
+      EXPECT_NEAR(fracture.damage_factors()[0], share, 1e-9);
+      EXPECT_EQ(fracture.broken_edge_count(), 1);
+    }
+  }
 }
 
 TEST_F(ReferenceTet, ZeroThresholdsAreCutAtOnceByTheShareOfEdges) {

@@ -176,23 +176,62 @@ TEST_F(Graph, WithoutDegreesNothingFalls) {
   EXPECT_EQ(Copy(graph.factors()), before);
 }
 
+// A draw for every edge, spread evenly over (0, 1).
+std::vector<double> EvenDraws(size_t edges) {
+  std::vector<double> draws(edges);
+  for (size_t edge = 0; edge < edges; ++edge)
+    draws[edge] = (static_cast<double>(edge * 7919 % edges) + 0.5) / static_cast<double>(edges);
+  return draws;
+}
+
 TEST_F(Graph, DrawnStrengthsAreFullOrExtremeInTheirShares) {
   for (double& potency : potencies_) potency = 0.5;
-  std::vector<double> draws(incidence_.edges.size());
-  for (size_t edge = 0; edge < draws.size(); ++edge)
-    draws[edge] = (static_cast<double>(edge) + 0.5) / static_cast<double>(draws.size());
-  RandomGraphSettings settings = kDegradation;
-  settings.follows_degrees = false;
-  const BondStrength bond(settings);
-  const double kappa = bond(0.5, 0.5, 1, 1);
-  const RandomGraph graph = Make(settings, draws);
-  size_t weak = 0;
-  for (const double factor : graph.factors()) {
-    const bool is_weak = factor == bond.extreme();
-    EXPECT_TRUE(is_weak || factor == 1);
-    weak += is_weak ? 1 : 0;
+  const std::vector<double> draws = EvenDraws(incidence_.edges.size());
+  for (RandomGraphSettings settings : {kDegradation, kUpgradation}) {
+    settings.follows_degrees = false;
+    const BondStrength bond(settings);
+    const double kappa = bond(0.5, 0.5, 1, 1);
+    const RandomGraph graph = Make(settings, draws);
+    size_t extreme = 0;
+    double sum = 0;
+    for (const double factor : graph.factors()) {
+      const bool is_extreme = factor == bond.extreme();
+      EXPECT_TRUE(is_extreme || factor == 1);
+      extreme += is_extreme ? 1 : 0;
+      sum += factor;
+    }
+    const double share = settings.effect == ImpurityEffect::kUpgradation
+                             ? (kappa - 1) / (bond.extreme() - 1)
+                             : 1 - kappa;
+    const auto edges = static_cast<double>(draws.size());
+    EXPECT_NEAR(static_cast<double>(extreme) / edges, share, 1 / edges);
+    // Strengthened, they are on average what is expected; weakened, all but the little that weak
+    // edges keep.
+    if (settings.effect == ImpurityEffect::kUpgradation) {
+      EXPECT_NEAR(sum / edges, kappa, 10 / edges);
+    }
   }
-  EXPECT_NEAR(static_cast<double>(weak) / static_cast<double>(draws.size()), 1 - kappa, 0.01);
+}
+
+// One draw an edge for good: what is weak stays so however many bonds are lost, and none mends.
+TEST_F(Graph, DrawnStrengthsOnlyFallAsBondsAreLost) {
+  for (double& potency : potencies_) potency = 0.3;
+  const std::vector<double> draws = EvenDraws(incidence_.edges.size());
+  for (const RandomGraphSettings& settings : {kDegradation, kUpgradation}) {
+    RandomGraph graph = Make(settings, draws);
+    std::vector<double> before = Copy(graph.factors());
+    int fallen = 0;
+    for (int32_t edge = 0; edge < 60; edge += 3) {
+      const int32_t broken[] = {edge};
+      graph.Break(broken);
+      for (size_t k = 0; k < before.size(); ++k) {
+        EXPECT_LE(graph.factors()[k], before[k]);
+        fallen += graph.factors()[k] < before[k] ? 1 : 0;
+      }
+      before = Copy(graph.factors());
+    }
+    EXPECT_GT(fallen, 0);
+  }
 }
 
 TEST_F(Graph, DealtStrengthsAreThoseOfOtherEdges) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -138,6 +139,45 @@ TEST_F(ElasticTermTest, ADamageFactorScalesEnergyForceAndStiffnessButNotEffectiv
   for (size_t tet = 0; tet < 12; ++tet) EXPECT_EQ(before[tet], after[tet]);
   for (int64_t tet = 0; tet < 12; ++tet) term_->SetDamageFactor(tet, 1);
   EXPECT_EQ(Energy(displacements), energy);
+}
+
+// Three cells in a row, the middle one dead: where the left one is does not matter to the right
+// one, to the last bit, and neither is pushed as a whole.
+TEST(DeadTets, LetNoForceAcross) {
+  const TetMesh mesh = KuhnBox({3, 1, 1}, {3, 1, 1});
+  const Incidence incidence = BuildIncidence(mesh);
+  const auto is_left = [&](size_t node) { return mesh.rest_positions[node][0] < 1.5; };
+  const auto term = MakeElasticTerm(Precision::kDouble, mesh, incidence,
+                                    {.lame = {ToLame(1000, 0.3)}}, FractureStress::kMatrix);
+  int dead = 0;
+  for (size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    const auto left = std::count_if(mesh.tets[tet].begin(), mesh.tets[tet].end(),
+                                    [&](int32_t n) { return is_left(static_cast<size_t>(n)); });
+    if (left == 0 || left == 4) continue;
+    term->SetDamageFactor(static_cast<int64_t>(tet), 0);
+    ++dead;
+  }
+  ASSERT_EQ(dead, 6);
+  NodalVector displacements;
+  for (const Vec3& x : mesh.rest_positions)
+    displacements.push_back(Double4{0.2 * std::sin(5 * x[1]), 0.3 * x[0] * x[2], 0.1 * x[0], 0});
+  NodalVector before(displacements.size(), Splat(0)), after = before;
+  term->AddForces(displacements, before);
+  for (size_t node = 0; node < displacements.size(); ++node) {
+    if (is_left(node)) displacements[node] += Double4{2, static_cast<double>(node), -1, 0};
+  }
+  term->AddForces(displacements, after);
+  Double4 on_left = Splat(0), on_right = Splat(0);
+  double size = 0;
+  for (size_t node = 0; node < after.size(); ++node) {
+    (is_left(node) ? on_left : on_right) += after[node];
+    size += std::sqrt(Dot(after[node], after[node]));
+    if (is_left(node)) continue;
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(after[node][axis], before[node][axis]);
+    EXPECT_GT(Dot(before[node], before[node]), 0);
+  }
+  EXPECT_LE(Dot(on_left, on_left), 1e-28 * size * size);
+  EXPECT_LE(Dot(on_right, on_right), 1e-28 * size * size);
 }
 
 TEST(ChunkColoring, NoColorHoldsANodeTwiceAndEveryChunkIsThereOnce) {
