@@ -222,8 +222,10 @@ class GalleryMaker {
                         scene.controls.end();
       scene.pictures.push_back(std::move(picture));
     }
+    CLEAVE_RETURN_IF_ERROR(WriteAside(folder_->table(), VerdictTable(gallery_)));
     CLEAVE_RETURN_IF_ERROR(WriteAside(folder_->page(), GalleryPage(gallery_)));
     PrintResult(folder_->page());
+    PrintResult(folder_->table());
     return absl::OkStatus();
   }
 
@@ -291,7 +293,7 @@ void AddGallery(CLI::App& app, Program& program) {
   verb->footer(
       "Runs that the folder has from the same build and settings are kept: after Ctrl-C or a crash "
       "the same\ncommand goes on. Controls are shown as such: they must fail their criterion. "
-      "Prints the page's path.\n\n"
+      "Prints the paths of the\npage and of verdicts.csv, which has every seed's values.\n\n"
       "Examples:\n"
       "  cleave gallery --out out/gallery --jobs 8\n"
       "  cleave gallery --out out/look --coarseness 100 --seeds 1 --layout lattice\n");

@@ -43,6 +43,7 @@ class GalleryFolder {
   absl::Status Make() const;
   absl::Status Clear() const;  // removes runs and pictures
   std::string page() const { return path_ + "/index.html"; }
+  std::string table() const { return path_ + "/verdicts.csv"; }
   std::string PicturePath(const GalleryRun& run) const;
   // Empty: there is none.
   std::string Find(const GalleryRun& run) const;

@@ -81,6 +81,11 @@ absl::StatusOr<std::vector<GalleryGroup>> ParseFindings(const std::string& json)
 // A page of HTML that needs no other file. The same gallery gives the same bytes.
 std::string GalleryPage(const Gallery& gallery);
 
+// The same as a table, comma-separated with a line of headings (RFC 4180): a row for each condition
+// of each criterion and layout. Seeds and their values are separated by spaces, "nan" where a value
+// was not measured; `met` counts the seeds that meet all conditions of the criterion.
+std::string VerdictTable(const Gallery& gallery);
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CLIENT_IO_GALLERY_GALLERY_H_

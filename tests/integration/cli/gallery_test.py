@@ -1,6 +1,7 @@
 """`cleave gallery`: a page of runs and verdicts."""
 
 import base64
+import csv
 import pathlib
 import signal
 import struct
@@ -18,11 +19,18 @@ class Gallery(CliTest):
         code, output, errors = self.gallery()
         self.assertEqual(code, 0, errors)
         page = self.folder / "gallery" / "index.html"
-        self.assertEqual(output.strip(), str(page))
+        table = self.folder / "gallery" / "verdicts.csv"
+        self.assertEqual(output.split(), [str(page), str(table)])
         text = page.read_text()
         self.assertIn("nothing differs in any bit", text)
         self.assertIn('class="good">met</td>', text)
         self.assertIn("2 of 2 verdicts are as they should be", errors)
+        with table.open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({(row["scene"], row["seeds"], row["verdict"]) for row in rows},
+                         {("locality", "1", "met")})
+        frame = next(row for row in rows if row["measured"] == "first frame that differs")
+        self.assertGreater(float(frame["values"]), 2)
         picture = next((self.folder / "gallery" / "pictures").glob("locality-with-*.png"))
         self.assertEqual(struct.unpack(">I", picture.read_bytes()[16:20])[0], 64)
         self.assertIn(base64.b64encode(picture.read_bytes()).decode(), text)

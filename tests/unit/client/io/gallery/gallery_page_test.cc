@@ -93,6 +93,21 @@ TEST(GalleryPage, HoldsItsPicturesAndMarksThoseOfControls) {
   EXPECT_THAT(page, HasSubstr("<figure class=\"control\"><img src=\"data:image/png;base64,YWJj\""));
 }
 
+TEST(VerdictTable, HasARowForEachConditionWithTheValuesOfAllSeeds) {
+  GalleryFinding finding = FindingOf(true, false);
+  finding.text = "It \"breaks\", along fibres";
+  finding.conditions.push_back({"pieces", "at most 2", {2, std::nan(""), 1, 2.5, 1e-9}});
+  EXPECT_EQ(
+      VerdictTable(GalleryOf(finding)),
+      "scene,layout,coarseness,criterion,control,measured,bound,seeds,values,met,trials,verdict\n"
+      "slab,lattice,1,\"It \"\"breaks\"\", along fibres\",control,\"lift\",\"at least 3\",2 3 4 5 "
+      "6,"
+      "5 1 4 3 2,5,5,\"passes: no evidence\"\n"
+      "slab,lattice,1,\"It \"\"breaks\"\", along fibres\",control,\"pieces\",\"at most 2\",2 3 4 5 "
+      "6,"
+      "2 nan 1 2.5 1e-09,5,5,\"passes: no evidence\"\n");
+}
+
 TEST(SceneAnswers, ListsVariantsOfCriteriaAndWhichOnlyControlsHave) {
   const auto scenes = ParseSceneList(
       R"({"scenes":[{"name":"s","title":"t","paper":"p","variants":["a","b","c"],"pictured":["a"],"coarsest":1.5,
