@@ -12,6 +12,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_limits.h"
 #include "core/scene/validate.h"
+#include "tests/stability/balances.h"
 #include "tests/stability/hostile_input.h"
 
 namespace cleave {
@@ -83,9 +84,14 @@ const Fault* Find(const std::vector<Fault>& faults, const HostileInput& input) {
 
 bool AllFinite(const FrameReport& report, const Simulation& simulation) {
   double sum = report.kinetic_energy + report.elastic_energy + report.external_work +
-               report.fracture_energy + report.integration_dissipation + report.residual;
-  for (const Vec3& position : simulation.positions())
-    sum += position[0] + position[1] + position[2];
+               report.fracture_energy + report.plastic_work + report.contact_energy +
+               report.friction_dissipation + report.integration_dissipation + report.residual;
+  const auto add = [&sum](const std::vector<Vec3>& vectors) {
+    for (const Vec3& vector : vectors) sum += vector[0] + vector[1] + vector[2];
+  };
+  add(simulation.positions());
+  add(report.motion_forces);
+  for (const double strain : simulation.plastic_strains()) sum += strain;
   return std::isfinite(sum);
 }
 
@@ -99,6 +105,8 @@ class HostileInputTest : public ::testing::TestWithParam<Trial> {
     if (!created.ok()) return 0;
     const std::unique_ptr<Simulation> simulation = *std::move(created);
     const StopFlag stop;
+    MomentumBalance momentum(body);
+    EnergyBalance energy;
     double worst_residual = 0;
     int64_t broken = 0;
     int halvings = 0;
@@ -108,6 +116,10 @@ class HostileInputTest : public ::testing::TestWithParam<Trial> {
       if (!report.ok()) return 0;
       EXPECT_TRUE(AllFinite(*report, *simulation)) << "frame " << frame;
       EXPECT_GE(report->broken_edges, broken) << "a broken edge mended";
+      EXPECT_LE(momentum.Excess(*report, simulation->positions()), 2) << "frame " << frame;
+      EXPECT_LE(energy.Gap(*report), 3 * body.scene.quality.residual_tolerance)
+          << "frame " << frame;
+      EXPECT_LE(energy.Made(), 1e-4) << "frame " << frame;
       broken = report->broken_edges;
       halvings += report->step_halvings;
       worst_residual = std::max(worst_residual, report->residual);

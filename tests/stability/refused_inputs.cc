@@ -1,5 +1,7 @@
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "tests/stability/hostile_input.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
@@ -47,16 +49,39 @@ std::vector<HostileInput> RefusedInputs() {
               [](Body& b) { b.scene.materials[0].poisson_ratio = -0.1; }),
       Spoiled(2, "PoissonRatioOfAFluid", "materials[0].poisson_ratio", "0.49999 is outside",
               [](Body& b) { b.scene.materials[0].poisson_ratio = 0.49999; }),
+      Spoiled(3, "NegativeDensity", "materials[0].density", "-1 is outside",
+              [](Body& b) { b.scene.materials[0].density = -1; }),
       Spoiled(3, "NoDensity", "materials[0].density", "0 is outside",
               [](Body& b) { b.scene.materials[0].density = 0; }),
       Spoiled(4, "NoTimeStep", "timing.frames_per_second", "inf is outside",
               [](Body& b) { b.scene.timing.frames_per_second = kInf; }),
+      Spoiled(4, "NegativeTimeStep", "timing.frames_per_second", "-24 is outside",
+              [](Body& b) { b.scene.timing.frames_per_second = -24; }),
       Spoiled(4, "TimeStepAboveTenSeconds", "timing.steps_per_frame", "makes steps of 100 s",
               [](Body& b) { b.scene.timing.frames_per_second = 0.01; }),
       Spoiled(5, "CoordinateNotANumber", "rest_positions[5]", "nan",
               [](Body& b) { b.mesh.rest_positions[5][1] = kNan; }),
       Spoiled(5, "InfiniteCoordinate", "rest_positions[5]", "inf",
               [](Body& b) { b.mesh.rest_positions[5][1] = kInf; }),
+      Spoiled(5, "StiffnessNotANumber", "materials[0].youngs_modulus", "nan is outside",
+              [](Body& b) { b.scene.materials[0].youngs_modulus = kNan; }),
+      Spoiled(5, "InfiniteStiffness", "materials[0].youngs_modulus", "inf is outside",
+              [](Body& b) { b.scene.materials[0].youngs_modulus = kInf; }),
+      Spoiled(5, "PoissonRatioNotANumber", "materials[0].poisson_ratio", "nan is outside",
+              [](Body& b) { b.scene.materials[0].poisson_ratio = kNan; }),
+      Spoiled(5, "InfiniteDensity", "materials[0].density", "inf is outside",
+              [](Body& b) { b.scene.materials[0].density = kInf; }),
+      Spoiled(5, "StrengthNotANumber", "materials[0].tensile_strength", "nan is outside",
+              [](Body& b) { b.scene.materials[0].tensile_strength = kNan; }),
+      Spoiled(5, "FlowRateNotANumber", "materials[0].plasticity.flow_rate", "nan is outside",
+              [](Body& b) {
+                b.scene.materials[0].plasticity =
+                    Plasticity{.yield_stress = 5e3, .hardening = 1e3, .flow_rate = kNan};
+              }),
+      Spoiled(5, "FibreStiffnessNotANumber", "materials[0].fibres[0].stiffness", "nan is outside",
+              [](Body& b) { AddFibres(b).stiffness = kNan; }),
+      Spoiled(5, "InfiniteNoise", "impurities.noise", "inf is outside",
+              [](Body& b) { AddImpurities(b).noise = kInf; }),
       Spoiled(5, "PotencyNotANumber", "impurities.map[7]", "nan is outside",
               [](Body& b) {
                 AddImpurities(b).map.assign(64, 0.5);
@@ -83,10 +108,19 @@ std::vector<HostileInput> RefusedInputs() {
               [](Body& b) {
                 AddFibres(b).direction = ConstantDirection{{0, 0, 0}};
               }),
+      Spoiled(7, "FibresOfATetWithoutDirection", "materials[0].fibres[0].per_tet.vectors[9]",
+              "has no direction",
+              [](Body& b) {
+                TetDirections directions{std::vector<Vec3>(162, {1, 0, 0})};
+                directions.vectors[9] = {0, 0, 0};
+                AddFibres(b).direction = std::move(directions);
+              }),
       Spoiled(8, "NegativeFibreStiffness", "materials[0].fibres[0].stiffness", "-1 is outside",
               [](Body& b) { AddFibres(b).stiffness = -1; }),
       Spoiled(9, "NodeIdOutOfRange", "tets[3]", "node 64 is outside",
               [](Body& b) { b.mesh.tets[3][2] = 64; }),
+      Spoiled(9, "NegativeNodeId", "tets[3]", "node -1 is outside",
+              [](Body& b) { b.mesh.tets[3][2] = -1; }),
       Spoiled(9, "NodeTwiceInATet", "tets[3]", "twice",
               [](Body& b) { b.mesh.tets[3][2] = b.mesh.tets[3][1]; }),
       Spoiled(10, "FlatTet", "tets[0]", "is flat",
@@ -109,7 +143,7 @@ std::vector<HostileInput> RefusedInputs() {
             b.mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.1, 0.1, 0.2}};
             b.mesh.tets = {{0, 1, 2, 3}, {1, 3, 2, 4}};
           }),
-      Spoiled(13, "NoTets", "tets", "", [](Body& b) { b.mesh.tets.clear(); }),
+      Spoiled(13, "NoTets", "tets", "at least one is needed", [](Body& b) { b.mesh.tets.clear(); }),
       Spoiled(14, "MapOfAnotherMesh", "impurities.map", "has 63 shares; the mesh has 64 nodes",
               [](Body& b) { AddImpurities(b).map.assign(63, 0.5); }),
       Spoiled(14, "FibresOfAnotherMesh", "materials[0].fibres[0].per_tet.vectors",
@@ -125,6 +159,8 @@ std::vector<HostileInput> RefusedInputs() {
               [](Body& b) { AddImpurities(b).steepness = 0; }),
       Spoiled(15, "PureOffsetOutOfRange", "impurities.pure_offset", "0 is outside",
               [](Body& b) { AddImpurities(b).pure_offset = 0; }),
+      Spoiled(15, "NegativeNoise", "impurities.noise", "-1 is outside",
+              [](Body& b) { AddImpurities(b).noise = -1; }),
       Spoiled(15, "WeakeningOutOfRange", "weakenings[0].factor", "-1 is outside",
               [](Body& b) {
                 b.scene.weakenings.push_back({SphereSelector{{0, 0, 0}, 1}, -1});

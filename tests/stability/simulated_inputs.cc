@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,6 +11,8 @@
 
 namespace cleave {
 namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 using Check = std::function<std::string(const Simulation&)>;
 
@@ -82,6 +85,20 @@ std::string StaysNear(const Simulation& simulation) {
   return "";
 }
 
+// m/s, of any node, in the cube's 0.2 s.
+Check IsPushedOffAtNoMoreThan(double speed) {
+  return [=](const Simulation& simulation) -> std::string {
+    const std::vector<Vec3> rest = KuhnBox({3, 3, 3}, {1, 1, 1}).rest_positions;
+    double farthest = 0;
+    for (size_t node = 0; node < rest.size(); ++node) {
+      for (size_t axis = 0; axis < 3; ++axis)
+        farthest =
+            std::max(farthest, std::abs(simulation.positions()[node][axis] - rest[node][axis]));
+    }
+    return farthest < 0.2 * speed ? "" : absl::StrCat("a node went ", farthest, " m");
+  };
+}
+
 HostileBody CrossingEnds() {
   HostileBody body;
   body.scene = TightScene(1e4, 0.3, 1000, 0.01);
@@ -97,6 +114,24 @@ HostileBody CrossingEnds() {
   return body;
 }
 
+// All nodes of a tet in a corner of the cube are led to one point.
+HostileBody CollapsedCorner() {
+  HostileBody body = CrushedCube(0);
+  body.scene.motions.clear();
+  const std::array<int32_t, 4> tet = body.mesh.tets[0];
+  const Vec3 end = body.mesh.rest_positions[static_cast<size_t>(tet[0])];
+  for (const int32_t node : tet) {
+    const Vec3& from = body.mesh.rest_positions[static_cast<size_t>(node)];
+    NodeSet set;
+    set.name = absl::StrCat("node ", node);
+    set.select = {IdSelector{{node}}};
+    body.scene.node_sets.push_back(set);
+    AddMotion(body.scene, set.name).keyframes = {
+        {0, {0, 0, 0}, 0}, {0.2, {end[0] - from[0], end[1] - from[1], end[2] - from[2]}, 0}};
+  }
+  return body;
+}
+
 }  // namespace
 
 std::vector<HostileInput> SimulatedInputs() {
@@ -104,6 +139,21 @@ std::vector<HostileInput> SimulatedInputs() {
   std::vector<HostileInput> inputs;
   const auto add = [&inputs](HostileInput input) { inputs.push_back(std::move(input)); };
 
+  add(Runs(
+      5, "StrengthWeakeningFlowAndFailureStrainMayBeInfinite", 10,
+      [] {
+        return Changed(CrushedCube(-0.5), [](Body& b) {
+          b.scene.materials[0].tensile_strength = 1e5;
+          b.scene.materials[0].plasticity = Plasticity{
+              .yield_stress = 5e4, .hardening = 1e4, .flow_rate = kInf, .failure_strain = kInf};
+          b.scene.weakenings.push_back({BoxSelector{{-9, -9, -9}, {9, 9, 9}}, kInf});
+        });
+      },
+      [](const Simulation& s) -> std::string {
+        const std::vector<double> strains = s.plastic_strains();
+        if (*std::max_element(strains.begin(), strains.end()) == 0) return "nothing flowed";
+        return s.broken_edges().empty() ? "" : "something broke";
+      }));
   add(Runs(29, "StiffnessOfAMillipascal", 5, [] { return StiffCube(1e-3); }));
   add(Runs(29, "StiffnessOfTenTerapascals", 5, [] { return StiffCube(1e13); }));
   add(Runs(30, "StepsOfATenthOfAMicrosecond", 5, [] {
@@ -171,7 +221,8 @@ std::vector<HostileInput> SimulatedInputs() {
       }));
   add(Runs(37, "NothingPinned", 10, FreeCube, FallsFreely(0, 0, 10)));
   add(Runs(38, "PotencyOfNothing", 10, [] { return ImpureCube(1e-302, 0); }));
-  add(Runs(38, "PotencyBeyondTheClamp", 10, [] { return ImpureCube(1, 10); }));
+  // Larger ones than scenes may ask for, to 1e300: BondStrength.IsMonotoneInPotencyAndBonds.
+  add(Runs(38, "PotencyAsLargeAsScenesMayAskFor", 10, [] { return ImpureCube(1, 10); }));
   add(Runs(
       39, "NoStrength", 10,
       [] {
@@ -181,9 +232,8 @@ std::vector<HostileInput> SimulatedInputs() {
   add(Runs(
       40, "InfiniteStrength", 10,
       [] {
-        return Changed(CrushedCube(-0.5), [](Body& b) {
-          b.scene.materials[0].tensile_strength = std::numeric_limits<double>::infinity();
-        });
+        return Changed(CrushedCube(-0.5),
+                       [](Body& b) { b.scene.materials[0].tensile_strength = kInf; });
       },
       [](const Simulation& s) -> std::string {
         return s.broken_edges().empty() ? "" : "something broke";
@@ -199,6 +249,9 @@ std::vector<HostileInput> SimulatedInputs() {
   add(Runs(
       42, "CrushedToAFifth", 30, [] { return CrushedCube(0.8); }, StaysNear));
   add(Runs(
+      42, "PressedFlat", 30, [] { return CrushedCube(1); }, StaysNear));
+  add(Runs(42, "CollapsedToAPoint", 30, CollapsedCorner, StaysNear));
+  add(Runs(
       42, "TurnedInsideOut", 30, [] { return CrushedCube(1.5); }, StaysNear));
   add(Runs(43, "PinnedEndsThatCross", 40, CrossingEnds, StaysNear));
   add(Runs(
@@ -211,7 +264,7 @@ std::vector<HostileInput> SimulatedInputs() {
           b.scene.quality.newton_iterations = 100;
         });
       },
-      StaysNear));
+      IsPushedOffAtNoMoreThan(60)));
   add(Runs(
       45, "NothingMoves", 10,
       [] {

@@ -6,6 +6,7 @@ namespace cleave {
 namespace {
 
 constexpr int kFrames = 5;
+constexpr double kThin = 1.5e-7;  // m; cells of a third of a metre across have an aspect of 1e6
 
 HostileInput Suspect(int number, const char* name, const char* field, const char* says,
                      std::function<void(HostileBody&)> change) {
@@ -34,11 +35,11 @@ std::vector<HostileInput> WarnedInputs() {
   return {
       Suspect(18, "TetsOfNegativeOrientation", "tets", "orient",
               [](Body& b) { std::swap(b.mesh.tets[3][0], b.mesh.tets[3][1]); }),
-      Suspect(19, "NodesOfNoTet", "rest_positions", "",
+      Suspect(19, "NodesOfNoTet", "rest_positions", "1 nodes are in no tet",
               [](Body& b) {
                 b.mesh.rest_positions.push_back({7, 7, 7});
               }),
-      Suspect(20, "CoincidentNodesThatAreNotWelded", "rest_positions", "",
+      Suspect(20, "CoincidentNodesThatAreNotWelded", "rest_positions", "16 nodes lie on another",
               [](Body& b) {
                 // A second cube against the first, with nodes of its own.
                 const TetMesh other = KuhnBox({3, 3, 3}, {1, 1, 1}, {1, 0, 0});
@@ -51,9 +52,9 @@ std::vector<HostileInput> WarnedInputs() {
               }),
       Suspect(21, "SliversOfAspectAMillion", "tets", "sliver",
               [](Body& b) {
-                // A thin layer of the cube's lowest cells.
+                // A thin layer of the cube's highest cells.
                 for (Vec3& p : b.mesh.rest_positions) {
-                  if (p[2] > 0.5 && p[2] < 0.9) p[2] = 1 - 1e-6;
+                  if (p[2] > 0.5 && p[2] < 0.9) p[2] = 1 - kThin;
                 }
                 b.scene.quality.newton_iterations = 100;
               }),
@@ -70,7 +71,6 @@ std::vector<HostileInput> WarnedInputs() {
               [](Body& b) {
                 FibreFamily family;
                 family.stiffness = 1e11;
-                family.direction = ConstantDirection{{1, 0, 1}};
                 family.direction = ConstantDirection{{0.6, 0, 0.8}};
                 b.scene.materials[0].fibres.push_back(family);
                 b.scene.quality.newton_iterations = 100;
@@ -85,7 +85,8 @@ std::vector<HostileInput> WarnedInputs() {
                 b.scene.materials[0].tensile_strength = 1e4;
                 b.scene.materials[0].plasticity = Plasticity{.yield_stress = 2e4};
               }),
-      Suspect(27, "FlowWithoutHardeningOrEnd", "materials[0].plasticity.hardening", "",
+      Suspect(27, "FlowWithoutHardeningOrEnd", "materials[0].plasticity.hardening",
+              "without a failure_strain",
               [](Body& b) {
                 b.scene.materials[0].tensile_strength = 1e5;
                 b.scene.materials[0].plasticity = Plasticity{.yield_stress = 2e4};
