@@ -1,6 +1,6 @@
 #include "client/io/export/export_series.h"
 
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "absl/strings/string_view.h"
 #include "client/io/export/obj.h"
 #include "client/io/export/ply.h"
+#include "client/io/export/surface_grid.h"
 #include "client/io/export/volume_sequence.h"
 #include "client/io/export/vtu.h"
 #include "client/io/series/data_key.h"
@@ -22,53 +23,9 @@
 namespace cleave {
 namespace {
 
-std::vector<int32_t> PointPieces(const ShownSurface& surface) {
-  std::vector<int32_t> pieces(surface.points.size(), -1);
-  for (size_t i = 0; i < surface.triangles.size(); ++i) {
-    for (const int32_t point : surface.triangles[i]) {
-      pieces[static_cast<size_t>(point)] = surface.pieces[i];
-    }
-  }
-  return pieces;
-}
-
-VtuGrid SurfaceGrid(const SurfaceSequence& sequence) {
-  const ShownSurface& surface = sequence.surface();
-  VtuGrid grid;
-  grid.time = surface.time;
-  grid.points = surface.points;
-  for (const auto& triangle : surface.triangles) {
-    grid.connectivity.insert(grid.connectivity.end(), triangle.begin(), triangle.end());
-    grid.offsets.push_back(static_cast<int64_t>(grid.connectivity.size()));
-  }
-  grid.types.assign(surface.triangles.size(), kVtuTriangle);
-  const std::vector<int32_t> pieces = PointPieces(surface);
-  grid.point_data.push_back(MakeVtuArray<int32_t>("piece", pieces));
-  grid.point_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().point_ids));
-  grid.point_data.push_back(MakeVtuVectors("rest", surface.rest_points));
-  grid.point_data.push_back(MakeVtuVectors("displacement", surface.displacements));
-  if (!surface.velocities.empty()) {
-    grid.point_data.push_back(MakeVtuVectors("velocity", surface.velocities));
-  }
-  if (!surface.strains.empty()) {
-    grid.point_data.push_back(MakeVtuArray<float>("strain", surface.strains));
-  }
-  grid.point_data.push_back(MakeVtuArray<float>("damage", surface.damages));
-  if (!surface.potencies.empty()) {
-    grid.point_data.push_back(MakeVtuArray<float>("potency", surface.potencies));
-  }
-  grid.cell_data.push_back(MakeVtuArray<uint64_t>("id", sequence.topology().triangle_ids));
-  grid.cell_data.push_back(MakeVtuArray<int32_t>("piece", surface.pieces));
-  grid.cell_data.push_back(MakeVtuArray<int32_t>("region", surface.regions));
-  grid.cell_data.push_back(MakeVtuArray<uint8_t>("inside", surface.inside));
-  grid.cell_data.push_back(MakeVtuArray<int32_t>("tet", sequence.topology().tets));
-  grid.cell_data.push_back(MakeVtuArray<int64_t>("source", surface.sources));
-  return grid;
-}
-
 // How a format goes on to a frame, and what it makes of it.
 struct Format {
-  // Called for every frame, also where its file stands: later frames depend on it.
+  // Called for every frame to be written, also where its file stands: later frames depend on it.
   std::function<absl::Status(const Frame& frame)> advance;
   std::function<absl::Status(const Frame& frame)> pass_by;  // for a frame that gets no file
   std::function<absl::StatusOr<std::string>(const Frame& frame, const std::string& comment)> encode;
@@ -187,7 +144,11 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
   std::optional<VolumeSequence> volume;
   if (content == VtuContent::kVolume) volume.emplace(mesh, sequence, options.node_potencies);
   Format format;
-  format.pass_by = [&](const Frame& frame) { return sequence.PassBy(frame); };
+  format.pass_by = [&](const Frame& frame) -> absl::Status {
+    CLEAVE_RETURN_IF_ERROR(sequence.PassBy(frame));
+    if (volume) volume->Advance(frame);
+    return absl::OkStatus();
+  };
   format.advance = [&](const Frame& frame) -> absl::Status {
     CLEAVE_RETURN_IF_ERROR(sequence.Advance(frame));
     if (volume) volume->Advance(frame);

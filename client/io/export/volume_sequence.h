@@ -25,10 +25,10 @@ class VolumeSequence {
         node_potencies_(node_potencies),
         moved_(mesh, sequence.incidence()) {}
 
-  // Call after every Advance of the sequence.
+  // Call after every Advance or PassBy of the sequence.
   void Advance(const Frame& frame);
 
-  // The frame of the last Advance, with the arrays of VtuContent::kVolume.
+  // The frame of the last Advance of both, with the arrays of VtuContent::kVolume.
   VtuGrid Grid(const Frame& frame) const;
 
  private:

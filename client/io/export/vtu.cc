@@ -68,8 +68,13 @@ class Arrays {
     absl::StrAppendFormat(&xml_, "format=\"appended\" offset=\"%u\"/>\n", data_.size());
     return AppendCompressed(array.bytes, data_);
   }
-  absl::Status AddSection(absl::string_view tag, const std::vector<VtuArray>& arrays) {
-    absl::StrAppend(&xml_, "<", tag, ">\n");
+  absl::Status AddSection(absl::string_view tag, const std::vector<VtuArray>& arrays,
+                          absl::string_view texture_coordinates = "") {
+    absl::StrAppend(&xml_, "<", tag);
+    if (!texture_coordinates.empty()) {
+      absl::StrAppend(&xml_, " TCoords=\"", texture_coordinates, "\"");
+    }
+    absl::StrAppend(&xml_, ">\n");
     for (const VtuArray& array : arrays) CLEAVE_RETURN_IF_ERROR(Add(array));
     absl::StrAppend(&xml_, "</", tag, ">\n");
     return absl::OkStatus();
@@ -115,11 +120,19 @@ absl::StatusOr<std::string> EncodeVtu(const VtuGrid& grid, absl::string_view com
   if (grid.offsets.size() != cells || (cells > 0 && grid.offsets.back() != ids)) {
     faults.Error("offsets", absl::StrCat("do not split ", ids, " ids over ", cells, " cells"));
   }
+  const auto is_texture = [&](const VtuArray& array) {
+    return array.name == grid.texture_coordinates;
+  };
+  if (!grid.texture_coordinates.empty() &&
+      std::none_of(grid.point_data.begin(), grid.point_data.end(), is_texture)) {
+    faults.Error("texture_coordinates",
+                 absl::StrCat("no array \"", grid.texture_coordinates, "\" in point_data"));
+  }
   if (comment.find("--") != absl::string_view::npos) faults.Error("comment", "holds \"--\"");
   CLEAVE_RETURN_IF_ERROR(faults.ToStatus());
 
   Arrays arrays;
-  CLEAVE_RETURN_IF_ERROR(arrays.AddSection("PointData", grid.point_data));
+  CLEAVE_RETURN_IF_ERROR(arrays.AddSection("PointData", grid.point_data, grid.texture_coordinates));
   CLEAVE_RETURN_IF_ERROR(arrays.AddSection("CellData", grid.cell_data));
   CLEAVE_RETURN_IF_ERROR(arrays.AddSection("Points", {MakeVtuVectors("Points", grid.points)}));
   CLEAVE_RETURN_IF_ERROR(

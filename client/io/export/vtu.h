@@ -52,6 +52,7 @@ struct VtuGrid {
   std::vector<uint8_t> types;         // a cell each
   std::vector<VtuArray> point_data;
   std::vector<VtuArray> cell_data;
+  std::string texture_coordinates;  // which of `point_data` they are; empty: none
 };
 
 // The bytes of a VTU file (VTK XML 1.0, UInt64 headers): appended raw data in zlib blocks that are

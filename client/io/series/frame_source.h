@@ -19,8 +19,9 @@ struct FrameSource {
   // order within a pass; a caller may make several passes. Called from one thread at a time.
   std::function<absl::StatusOr<Frame>(int64_t position)> read;
   // Visits the frames that the source leaves out between the position before (or the start of the
-  // run) and this one, in order, where it leaves any out: pieces have their names from all frames.
-  // Asked for, if at all, right before read(position). May be empty.
+  // run) and this one, in order, where it leaves any out: pieces have their names from all frames,
+  // and velocities from the one before. Asked for, if at all, right before read(position). May be
+  // empty.
   using Visit = std::function<absl::Status(const Frame& frame)>;
   std::function<absl::Status(int64_t position, const Visit& visit)> pass_by;
 };

@@ -74,13 +74,6 @@ SurfaceSequence::SurfaceSequence(const TetMesh& mesh, const SequenceOptions& opt
   });
 }
 
-absl::Status SurfaceSequence::PassBy(const Frame& frame) {
-  CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(), last_time_));
-  last_time_ = frame.time;
-  if (!pieces_ || frame.broken_edges != broken_edges_) Follow(frame);
-  return absl::OkStatus();
-}
-
 absl::Status SurfaceSequence::CheckKnown(const Frame& frame) const {
   if (frame.visible.empty()) return absl::OkStatus();
   Faults faults;
@@ -95,13 +88,21 @@ absl::Status SurfaceSequence::CheckKnown(const Frame& frame) const {
   return faults.ToStatus();
 }
 
-absl::Status SurfaceSequence::Advance(const Frame& frame) {
+absl::Status SurfaceSequence::GoOn(const Frame& frame) {
   CLEAVE_RETURN_IF_ERROR(CheckKnown(frame));
   CLEAVE_RETURN_IF_ERROR(CheckFrame(frame, mesh_, incidence_.edge_count(), last_time_));
   last_time_ = frame.time;
-  changed_ = !started_ || is_stale_ || frame.broken_edges != broken_edges_;
-  if (changed_) TakeApart(frame);
+  changed_ = !pieces_ || frame.broken_edges != broken_edges_;
+  if (changed_) Follow(frame);
   moved_.Advance(topology(), changed_, frame.positions, frame.time, options_.velocities);
+  return absl::OkStatus();
+}
+
+absl::Status SurfaceSequence::PassBy(const Frame& frame) { return GoOn(frame); }
+
+absl::Status SurfaceSequence::Advance(const Frame& frame) {
+  CLEAVE_RETURN_IF_ERROR(GoOn(frame));
+  if (is_stale_) TakeApart();
   shown_.points = moved_.points();
   shown_.velocities = moved_.velocities();
   if (options_.displacements) shown_.displacements = Displacements(topology(), shown_.points);
@@ -109,7 +110,6 @@ absl::Status SurfaceSequence::Advance(const Frame& frame) {
   shown_.frame = frame.frame;
   shown_.time = frame.time;
   shown_.broken_edges = static_cast<int64_t>(frame.broken_edges.size());
-  started_ = true;
   return absl::OkStatus();
 }
 
@@ -139,8 +139,7 @@ void SurfaceSequence::Follow(const Frame& frame) {
   is_stale_ = true;
 }
 
-void SurfaceSequence::TakeApart(const Frame& frame) {
-  if (!pieces_ || frame.broken_edges != broken_edges_) Follow(frame);
+void SurfaceSequence::TakeApart() {
   is_stale_ = false;
   node_pieces_.resize(mesh_.rest_positions.size());
   for (size_t node = 0; node < node_pieces_.size(); ++node)

@@ -46,13 +46,14 @@ class SurfaceSequence {
   // InvalidArgument for a frame that is not this mesh's or not finite, or is of a surface view
   // where strains, velocities or a render mesh are wanted; then nothing changed.
   absl::Status Advance(const Frame& frame);
-  // Takes note of what broke in a frame that is not to be shown, and nothing else: the names of
-  // pieces follow from it. Errors: as of Advance.
+  // Goes on to a frame that is not to be shown: later ones look as if it had been, down to the bit.
+  // Errors: as of Advance.
   absl::Status PassBy(const Frame& frame);
 
-  // The surface of the last frame. Piece ids are those of NamedPieces: they follow from the frames
-  // that were given, and are the simulation's own where none was left out. Strains are means over
-  // the live tets at the nodes (0 where there is none); velocities are means since the frame
+  // The surface of the last frame that was to be shown. Piece ids are those of NamedPieces: they
+  // follow from the frames that were given, and are the simulation's own where none was left out,
+  // as are the places of nodes that have lost their last tet (point_motion.h). Strains are means
+  // over the live tets at the nodes (0 where there is none); velocities are means since the frame
   // before, 0 in the first.
   // Damages are means over all tets at the nodes on a point's side; potencies are interpolated.
   const ShownSurface& surface() const { return shown_; }
@@ -64,7 +65,7 @@ class SurfaceSequence {
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
   int64_t piece_count() const { return pieces_->count(); }
   const Incidence& incidence() const { return incidence_; }
-  // Whether the topology is another one than a frame before.
+  // Whether the topology is another one than a frame before, be it shown or passed by.
   bool changed() const { return changed_; }
 
   // The share of broken edges of every tet, in [0, 1].
@@ -75,9 +76,11 @@ class SurfaceSequence {
 
  private:
   absl::Status CheckKnown(const Frame& frame) const;
+  // Takes pieces and points on to a frame.
+  absl::Status GoOn(const Frame& frame);
   // Breaks what broke since the last frame.
   void Follow(const Frame& frame);
-  void TakeApart(const Frame& frame);
+  void TakeApart();
   // Copies what the topology says into shown_.
   void Show();
   void FindSources();
@@ -93,7 +96,6 @@ class SurfaceSequence {
   std::vector<std::array<float, 9>> rest_inverses_;  // 1/m, a tet each; only with strains
   std::vector<float> rest_volumes_;                  // m^3; only with strains
 
-  bool started_ = false;
   bool changed_ = false;
   bool is_stale_ = false;  // what is shown is of fewer broken edges
   double last_time_ = -std::numeric_limits<double>::infinity();  // s

@@ -3,13 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "client/io/series/write_aside.h"
+#include "core/base/status.h"
 #include "core/mesh/incidence.h"
 #include "tests/unit/client/io/export/vtu_reader.h"
 #include "tests/unit/client/io/two_tets.h"
@@ -182,6 +185,60 @@ TEST_F(ExportSeriesTest, AStoppedExportGoesOnWithTheSameFiles) {
   EXPECT_EQ(ReadWhole("run_000004.vtu"), resumed);
 }
 
+// Three frames of a body that turns by a quarter each, in the second of which the tip loses the
+// only tet that it had.
+Frame Turned(const TetMesh& mesh, int64_t number) {
+  Frame frame;
+  frame.frame = number;
+  frame.time = 0.1 * static_cast<double>(number);
+  frame.positions = mesh.rest_positions;
+  for (int64_t turn = 0; turn < number; ++turn) {
+    for (Vec3& position : frame.positions) position = {position[0], -position[2], position[1]};
+  }
+  if (number > 0) {
+    const Incidence incidence = BuildIncidence(mesh);
+    const auto edges = incidence.node_edges[4];
+    frame.broken_edges.assign(edges.begin(), edges.end());
+  }
+  return frame;
+}
+
+TEST_F(ExportSeriesTest, AFramesFileIsTheSameWhicheverFramesAreLeftOut) {
+  FrameSource all;
+  all.count = 3;
+  all.read = [this](int64_t position) { return Turned(mesh_, position); };
+  FrameSource last;  // of the same run
+  last.count = 1;
+  last.read = [this](int64_t) { return Turned(mesh_, 2); };
+  last.pass_by = [this](int64_t, const FrameSource::Visit& visit) -> absl::Status {
+    for (const int64_t number : {0, 1}) CLEAVE_RETURN_IF_ERROR(visit(Turned(mesh_, number)));
+    return absl::OkStatus();
+  };
+  for (const std::string kind : {"vtu", "vtu-volume", "ply", "obj"}) {
+    SCOPED_TRACE(kind);
+    const std::string folder = directory_.path() + "/" + kind;
+    const auto write = [&](const FrameSource& frames, const std::string& to) {
+      options_.folder = folder + "/" + to;
+      return kind == "ply" ? WritePlySeries(mesh_, frames, options_, nullptr)
+             : kind == "obj"
+                 ? WriteObjSeries(mesh_, frames, options_, nullptr)
+                 : WriteVtuSeries(mesh_, frames,
+                                  kind == "vtu" ? VtuContent::kSurface : VtuContent::kVolume,
+                                  options_, nullptr);
+    };
+    const std::string file = "run_000002." + kind.substr(0, 3);
+    ASSERT_TRUE(write(all, "all").ok());
+    const std::string whole = ReadWhole(file);
+    ASSERT_TRUE(write(last, "last").ok());
+    EXPECT_TRUE(ReadWhole(file) == whole);  // not EXPECT_EQ, which would print them
+    // Which is why it may stay where the others are asked for.
+    const auto rest = write(all, "last");
+    ASSERT_TRUE(rest.ok());
+    EXPECT_EQ(rest->kept, 1);
+    EXPECT_TRUE(ReadWhole(file) == whole);
+  }
+}
+
 TEST_F(ExportSeriesTest, FilesOfOtherDataAreNotKept) {
   ASSERT_TRUE(
       WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, nullptr).ok());
@@ -247,6 +304,52 @@ TEST_F(ExportSeriesTest, ARenderMeshIsWrittenWithItsTextureCoordinatesAndInsideF
   EXPECT_THAT(ReadWhole("run_000004.vtu"), HasSubstr("Name=\"source\""));
   ASSERT_TRUE(WritePlySeries(mesh, FlyingTip(mesh), options_, {}).ok());
   EXPECT_THAT(ReadWhole("run_000004.ply"), HasSubstr("property list uchar float texcoord\n"));
+}
+
+TEST_F(ExportSeriesTest, VtuPointsAreDoubledWhereTextureCoordinatesMeet) {
+  RenderMesh render;
+  render.points = mesh_.rest_positions;
+  render.triangles = {{3, 2, 0}, {1, 3, 0}, {2, 1, 0}, {2, 3, 4}, {3, 1, 4}, {1, 2, 4}};
+  // A chart of its own for the first triangle, one for all others.
+  render.uvs.assign(6, CornerUvs{{{0.125f, 0.25f}, {0.125f, 0.25f}, {0.125f, 0.25f}}});
+  render.uvs[0] = CornerUvs{{{0.5f, 0.5f}, {1, 0.5f}, {0.5f, 1}}};
+  options_.render_mesh = &render;
+  ASSERT_TRUE(WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, {}).ok());
+  const std::string bytes = ReadWhole("run_000004.vtu");
+  EXPECT_THAT(bytes, HasSubstr("<PointData TCoords=\"uv\">"));
+  const ReadVtu vtu = Vtu("run_000004.vtu");
+  const auto uvs = vtu.Values<float>("PointData.uv");
+  const auto sources = vtu.Values<int64_t>("CellData.source");
+  const auto corners = vtu.Values<int64_t>("Cells.connectivity");
+  ASSERT_EQ(uvs.size(), 2u * static_cast<size_t>(vtu.points));
+  for (size_t triangle = 0; triangle < sources.size(); ++triangle) {
+    if (sources[triangle] < 0) continue;
+    for (size_t k = 0; k < 3; ++k) {
+      const auto point = static_cast<size_t>(corners[3 * triangle + k]);
+      if (sources[triangle] == 0) {
+        EXPECT_GE(uvs[2 * point], 0.5f);
+        EXPECT_GE(uvs[2 * point + 1], 0.5f);
+      } else {
+        EXPECT_EQ(uvs[2 * point], 0.125f);
+        EXPECT_EQ(uvs[2 * point + 1], 0.25f);
+      }
+    }
+  }
+  // Copies have the id of what they are copies of, and its place.
+  const auto ids = vtu.Values<uint64_t>("PointData.id");
+  const auto places = vtu.Values<float>("Points.Points");
+  std::map<uint64_t, std::array<float, 3>> place_of;
+  for (size_t point = 0; point < ids.size(); ++point) {
+    const std::array<float, 3> place = {places[3 * point], places[3 * point + 1],
+                                        places[3 * point + 2]};
+    EXPECT_EQ(place_of.try_emplace(ids[point], place).first->second, place);
+  }
+  EXPECT_GT(ids.size(), place_of.size());
+  // Without texture coordinates there is nothing to double.
+  render.uvs.clear();
+  ASSERT_TRUE(WriteVtuSeries(mesh_, FlyingTip(mesh_), VtuContent::kSurface, options_, {}).ok());
+  EXPECT_EQ(Vtu("run_000004.vtu").points, static_cast<int64_t>(place_of.size()));
+  EXPECT_THAT(ReadWhole("run_000004.vtu"), ::testing::Not(HasSubstr("TCoords")));
 }
 
 TEST_F(ExportSeriesTest, BadFramesAreAStatusAndWhatWasWrittenStays) {
