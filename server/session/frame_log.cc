@@ -60,11 +60,11 @@ absl::Status FrameLogWriter::Recover() {
   CLEAVE_RETURN_IF_ERROR(SyncDirectory(directory_));
   CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(index_path, kMaxIndexBytes));
   rows_ = ParseConsecutiveRows(bytes).rows;
-  const auto last_is_whole = [this] {
-    const absl::StatusOr<std::string> frame = ReadFrame(rows_.back());
-    return frame.ok() && SplitFrame(*frame).ok();
-  };
-  while (!rows_.empty() && !last_is_whole()) rows_.pop_back();
+  while (!rows_.empty()) {
+    CLEAVE_ASSIGN_OR_RETURN(const bool whole, LastIsWhole());
+    if (whole) break;
+    rows_.pop_back();
+  }
   CLEAVE_RETURN_IF_ERROR(
       Truncate(index_, static_cast<int64_t>(rows_.size() * kIndexRowBytes), index_path));
   CLEAVE_RETURN_IF_ERROR(SyncData(index_, index_path));
@@ -77,6 +77,18 @@ absl::Status FrameLogWriter::Recover() {
   segment_number_ = last.segment;
   segment_end_ = static_cast<int64_t>(last.offset + last.length);
   return Truncate(segment_, segment_end_, path);
+}
+
+absl::StatusOr<bool> FrameLogWriter::LastIsWhole() const {
+  const absl::StatusOr<std::string> frame = ReadFrame(rows_.back());
+  if (frame.ok()) return SplitFrame(*frame).ok();
+  if (IsLogDamage(frame.status())) return false;
+  return frame.status();
+}
+
+bool IsLogDamage(const absl::Status& error) {
+  return absl::IsNotFound(error) || absl::IsOutOfRange(error) || absl::IsDataLoss(error) ||
+         absl::IsUnimplemented(error);
 }
 
 absl::StatusOr<std::string> FrameLogWriter::ReadFrame(const IndexRow& row) const {

@@ -24,7 +24,8 @@ namespace cleave {
 class FrameLogWriter {
  public:
   // `directory` must exist. Cuts off what is not committed: torn rows, rows whose frame is not
-  // whole, bytes behind the last frame.
+  // whole, bytes behind the last frame. Errors: DataLoss and Unimplemented for a stream header;
+  // where files cannot be read or written, the log stays as it is.
   static absl::StatusOr<FrameLogWriter> Open(std::string directory,
                                              int64_t segment_bytes = int64_t{64} << 20);
 
@@ -44,6 +45,7 @@ class FrameLogWriter {
       : directory_(std::move(directory)), segment_bytes_(segment_bytes) {}
 
   absl::Status Recover();
+  absl::StatusOr<bool> LastIsWhole() const;
   absl::Status StartSegment(uint32_t number, absl::string_view header_bytes);
 
   std::string directory_;
@@ -55,6 +57,10 @@ class FrameLogWriter {
   uint32_t segment_number_ = 0;
   int64_t segment_end_ = 0;
 };
+
+// Whether an error of reading a log says that the log is at fault - torn, garbled, of another
+// version - and not the machine, which may be better another time.
+bool IsLogDamage(const absl::Status& error);
 
 // Reads committed frames while another process appends. Thread-safe.
 class FrameLogReader {

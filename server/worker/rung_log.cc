@@ -21,7 +21,8 @@ absl::StatusOr<std::unique_ptr<RungLog>> RungLog::Open(const SessionPaths& paths
   if (opened->surface_) opened->tets_ = inputs.mesh.tets;
   CLEAVE_RETURN_IF_ERROR(opened->MakeHeader(inputs));
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(opened->directory_));
-  if (!opened->Resume().ok()) CLEAVE_RETURN_IF_ERROR(opened->Begin());
+  CLEAVE_ASSIGN_OR_RETURN(const bool goes_on, opened->Resume());
+  if (!goes_on) CLEAVE_RETURN_IF_ERROR(opened->Begin());
   return opened;
 }
 
@@ -42,24 +43,28 @@ absl::Status RungLog::MakeHeader(const SessionInputs& inputs) {
   return absl::OkStatus();
 }
 
-absl::Status RungLog::Resume() {
-  CLEAVE_ASSIGN_OR_RETURN(log_, FrameLogWriter::Open(directory_));
-  if (head() < 0) return absl::NotFoundError("the rung has no frame");
-  if (log_->header_bytes() != SerializeStreamHeader(header_))
-    return absl::FailedPreconditionError("the rung was encoded by another build");
+absl::StatusOr<bool> RungLog::Resume() {
+  absl::StatusOr<FrameLogWriter> log = FrameLogWriter::Open(directory_);
+  if (IsLogDamage(log.status())) return false;
+  CLEAVE_ASSIGN_OR_RETURN(log_, std::move(log));
+  if (head() < 0) return false;
+  if (log_->header_bytes() != SerializeStreamHeader(header_)) return false;  // of another build
   CLEAVE_RETURN_IF_ERROR(kept_.Refresh(head()));
-  if (kept_.head() != head()) return absl::DataLossError("the rung is ahead of the session");
+  if (kept_.head() != head()) return false;
   const int64_t key = kept_.Keyframe(head())->frame;
   CLEAVE_ASSIGN_OR_RETURN(decoder_, FrameDecoder::Create(kept_header_bytes_, mesh()));
   CLEAVE_ASSIGN_OR_RETURN(FrameDecoder own, FrameDecoder::Create(log_->header_bytes(), mesh()));
   for (int64_t frame = key; frame <= head(); ++frame) {
     CLEAVE_ASSIGN_OR_RETURN(const std::string kept, kept_.ReadFrame(*kept_.Find(frame)));
     CLEAVE_RETURN_IF_ERROR(decoder_->Apply(kept));
-    CLEAVE_ASSIGN_OR_RETURN(const std::string bytes,
-                            log_->ReadFrame(log_->rows()[static_cast<size_t>(frame)]));
-    CLEAVE_RETURN_IF_ERROR(own.Apply(bytes));
+    const absl::StatusOr<std::string> bytes =
+        log_->ReadFrame(log_->rows()[static_cast<size_t>(frame)]);
+    if (IsLogDamage(bytes.status())) return false;
+    if (!bytes.ok()) return bytes.status();
+    if (!own.Apply(*bytes).ok()) return false;
   }
-  return MakeEncoder(own.state());
+  CLEAVE_RETURN_IF_ERROR(MakeEncoder(own.state()));
+  return true;
 }
 
 absl::Status RungLog::MakeEncoder(std::optional<StreamState> state) {

@@ -23,12 +23,13 @@ namespace cleave {
 // A session's frames as a coarser rung, in the surface view, or with a region of interest: decoded
 // from the session's log, encoded anew and committed to a log of its own, from frame 0 on. Its
 // bytes follow from the session's alone, whoever watches and whenever, so nothing is lost with it:
-// a log that is damaged, or ahead of the session's, is begun anew. Not thread-safe.
+// a log that is damaged, ahead of the session's, or of another build is begun anew. Not
+// thread-safe.
 class RungLog {
  public:
   // Goes on behind the last frame of the rung's log. The session has frame 0, and the caller owns
   // the rung (owner_lock.h). Errors: InvalidArgument when there can be no such encoding; NotFound,
-  // DataLoss.
+  // DataLoss of the session's log; what reading and writing files gives, which costs no frame.
   static absl::StatusOr<std::unique_ptr<RungLog>> Open(const SessionPaths& paths,
                                                        const SessionInputs& inputs,
                                                        const worker::v1::Encoding& encoding);
@@ -54,8 +55,9 @@ class RungLog {
 
   absl::Status MakeHeader(const SessionInputs& inputs);
   absl::Status MakeEncoder(std::optional<StreamState> state);
-  // Brings both ends of the encoding to the head of the log.
-  absl::Status Resume();
+  // Brings both ends of the encoding to the head of the log; false where that is not to be gone on
+  // with.
+  absl::StatusOr<bool> Resume();
   absl::Status Begin();
   StreamMesh mesh() const { return {rest_positions_, edges_, tets_}; }
 

@@ -109,6 +109,20 @@ TEST(FrameLogTest, ASegmentTornAtAnyByteLosesOnlyFramesThatAreNotWhole) {
   }
 }
 
+TEST(FrameLogTest, ALogThatCannotBeReadIsAnErrorAndStaysAsItIs) {
+  TemporaryDirectory directory;
+  AppendFrames(directory.path(), 0, 4, 1 << 20);
+  const std::string segment = directory / "00000000.clv";
+  const std::string aside = directory / "aside";
+  std::filesystem::rename(segment, aside);
+  std::filesystem::create_symlink(segment, segment);  // to itself: what opens it fails, root too
+  EXPECT_FALSE(FrameLogWriter::Open(directory.path()).ok());
+  EXPECT_EQ(ReadBytes(directory / "index").size(), 5 * kIndexRowBytes);
+  std::filesystem::rename(aside, segment);
+  AppendFrames(directory.path(), 5, 6, 1 << 20);
+  ExpectFrames(directory.path(), 6);
+}
+
 TEST(FrameLogTest, AReaderKnowsNoFrameBeyondTheAnnouncedHead) {
   TemporaryDirectory directory;
   AppendFrames(directory.path(), 0, 5, 1 << 20);
