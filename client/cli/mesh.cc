@@ -1,15 +1,20 @@
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/console.h"
+#include "client/cli/heartbeat.h"
 #include "client/cli/mesh_text.h"
+#include "client/cli/named_value.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
+#include "client/cli/progress.h"
 #include "client/io/export/vtu.h"
 #include "client/io/series/write_aside.h"
 #include "client/io/surface/surface_file.h"
@@ -49,7 +54,12 @@ absl::Status MakeMesh(const Options& options) {
     for (double& coordinate : vertex) coordinate *= options.unit_scale;
   }
   PrintNote(absl::StrCat("filling ", options.surface, " with tets"));
+  std::optional<Heartbeat> heartbeat;
+  heartbeat.emplace(std::chrono::seconds(5), [&](double seconds) {
+    PrintNote(absl::StrCat("filling ", options.surface, ": at it for ", FormatSeconds(seconds)));
+  });
   auto body = MeshSurface(surface.vertices, surface.triangles, options.resolution);
+  heartbeat.reset();
   if (!body.ok()) {
     return absl::Status(body.status().code(),
                         absl::StrCat(options.surface, ": ", body.status().message()));
@@ -107,7 +117,7 @@ void AddMesh(CLI::App& app, Program& program) {
   const std::map<std::string, MeshLayout> layouts = {{"unstructured", MeshLayout::kUnstructured},
                                                      {"lattice", MeshLayout::kJitteredLattice}};
   verb->add_option("--layout", options->resolution.layout, "How nodes lie inside")
-      ->transform(CLI::CheckedTransformer(layouts))
+      ->transform(NamedValue(layouts))
       ->default_str("unstructured");
   verb->add_option("--seed", options->resolution.seed, "Of the random places of nodes")
       ->capture_default_str();

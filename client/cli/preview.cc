@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/console.h"
+#include "client/cli/named_value.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/render_mesh_input.h"
@@ -194,13 +195,11 @@ void AddPreview(CLI::App& app, Program& program) {
       ->capture_default_str()
       ->type_name("METRES");
   verb->add_option("--color", options->look.color_by, "What colours tell; default: region")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, ColorBy>{{"region", ColorBy::kRegion},
-                                                                 {"piece", ColorBy::kPiece},
-                                                                 {"strain", ColorBy::kStrain},
-                                                                 {"damage", ColorBy::kDamage},
-                                                                 {"impurity", ColorBy::kImpurity}})
-              .description(""))
+      ->transform(NamedValue<ColorBy>({{"region", ColorBy::kRegion},
+                                       {"piece", ColorBy::kPiece},
+                                       {"strain", ColorBy::kStrain},
+                                       {"damage", ColorBy::kDamage},
+                                       {"impurity", ColorBy::kImpurity}}))
       ->type_name("region|piece|strain|damage|impurity");
   verb->add_option("--width", options->look.width, "Pixels of a picture, or of a sheet's tile")
       ->check(CountWithin(16, kMaxImageSide))

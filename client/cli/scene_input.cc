@@ -179,6 +179,18 @@ absl::Status Complete(SceneInput& input) {
   return FitMessage(input);
 }
 
+bool IsOfScene(absl::string_view field) {
+  const std::string first(field.substr(0, field.find_first_of(".[")));
+  return v1::Scene::descriptor()->FindFieldByName(first) != nullptr;
+}
+
+// What says a field of a call on the command line.
+absl::string_view OptionOf(absl::string_view field) {
+  if (field == "session_id") return "--session";
+  if (field == "threads") return "--threads";
+  return field == "rung" ? "--rung" : field;
+}
+
 }  // namespace
 
 absl::StatusOr<SceneInput> LoadScene(const std::string& path) {
@@ -271,9 +283,18 @@ absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale) 
 }
 
 absl::Status WithLines(const SceneFile& file, const absl::Status& status) {
-  const std::vector<Fault> faults = FaultsOf(status);
-  if (faults.empty()) return status;
-  absl::Status named(status.code(), file.Describe(faults));
+  std::vector<Fault> of_scene;
+  std::vector<std::string> lines;  // of the call
+  for (const Fault& fault : FaultsOf(status)) {
+    if (IsOfScene(fault.field)) {
+      of_scene.push_back(fault);
+    } else {
+      lines.push_back(absl::StrCat(OptionOf(fault.field), ": ", fault.description));
+    }
+  }
+  if (!of_scene.empty()) lines.push_back(file.Describe(of_scene));
+  if (lines.empty()) return status;
+  absl::Status named(status.code(), absl::StrJoin(lines, "\n"));
   status.ForEachPayload([&named](absl::string_view type, const absl::Cord& payload) {
     named.SetPayload(type, payload);
   });

@@ -47,7 +47,8 @@ Faults CheckWithBody(const SceneInput& input, const TetMesh& mesh);
 // with those that say it themselves.
 absl::StatusOr<TetMesh> ReadAnyMesh(const std::string& path, double unit_scale);
 
-// The status of a call about this scene, with the lines of the scene file where fields are named.
+// The status of a call about this scene: fields of the scene with their lines in its file, others
+// as the options that say them.
 absl::Status WithLines(const SceneFile& file, const absl::Status& status);
 
 }  // namespace cleave

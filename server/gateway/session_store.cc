@@ -30,6 +30,9 @@ constexpr absl::string_view kScratchPrefix = ".";
 constexpr size_t kMaxRequestIdBytes = 128;
 constexpr int kMaxThreads = 1024;
 
+constexpr absl::string_view kSessionIdRule =
+    "a letter and 2 to 62 letters, digits or dashes, all lower-case";
+
 bool IsSessionId(absl::string_view id) {
   return id.size() >= 3 && id.size() <= 63 && id[0] >= 'a' && id[0] <= 'z' &&
          std::all_of(id.begin(), id.end(), [](char c) {
@@ -41,10 +44,8 @@ Faults CheckRequest(const v1::CreateSessionRequest& request) {
   Faults faults;
   if (!IsSessionId(request.session_id()) &&
       !(request.validate_only() && request.session_id().empty())) {
-    faults.Error("session_id",
-                 absl::StrCat("\"", absl::CEscape(request.session_id().substr(0, 80)),
-                              "\" is not a letter and 2 to 62 letters, digits or dashes, all "
-                              "lower-case"));
+    faults.Error("session_id", absl::StrCat("\"", absl::CEscape(request.session_id().substr(0, 80)),
+                                            "\" is not ", kSessionIdRule));
   }
   if (request.request_id().size() > kMaxRequestIdBytes) {
     faults.Error("request_id", absl::StrCat("has more than ", kMaxRequestIdBytes, " bytes"));
@@ -235,7 +236,7 @@ absl::StatusOr<std::shared_ptr<HostedSession>> SessionStore::Find(const std::str
   absl::string_view id = name;
   if (!absl::ConsumePrefix(&id, "sessions/") || !IsSessionId(id)) {
     return MakeBadField("name", absl::StrCat("\"", absl::CEscape(name.substr(0, 80)),
-                                             "\" is not \"sessions/{session_id}\""));
+                                             "\" is not \"sessions/\" and ", kSessionIdRule));
   }
   const std::lock_guard lock(mutex_);
   const auto session = sessions_.find(std::string(id));

@@ -55,11 +55,16 @@ constexpr const char* kServices[] = {"cleave.v1.AssetService",    "cleave.v1.Fra
                                      "cleave.v1.ImpurityService", "cleave.v1.MaterialService",
                                      "cleave.v1.ServerService",   "cleave.v1.SessionService"};
 
+// As server.proto has them.
+constexpr const char* kFeatures[] = {"events", "impurity_preview", "latest", "probe",
+                                     "region", "render_mesh",      "rungs",  "surface"};
+
 v1::ServerInfo DescribeServer(const AssetLimits& assets) {
   v1::ServerInfo info;
   info.set_server_version(CLEAVE_VERSION);
   info.add_api_versions("cleave.v1");
   info.set_instance_id(NewUid());
+  for (const char* const feature : kFeatures) info.add_features(feature);
   v1::ServerLimits& limits = *info.mutable_limits();
   limits.set_max_message_bytes(kMaxMessageBytes);
   limits.set_max_chunk_bytes(assets.max_chunk_bytes);

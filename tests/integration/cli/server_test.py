@@ -32,7 +32,9 @@ class Server(CliTest):
         self.assertEqual(self.ask("cancel", "block", "--delete")[0], 0)
         self.assertEqual(self.ask("watch", "block")[0], 6)
         code, output, _ = self.ask("info", "--json")
-        self.assertEqual(json.loads(output)["api_versions"], ["cleave.v1"])
+        info = json.loads(output)
+        self.assertEqual(info["api_versions"], ["cleave.v1"])
+        self.assertIn("region", info["features"])
 
     def test_viewers_choose_among_the_accuracies_that_a_session_keeps(self):
         scene = self.scene(BLOCK % 6)
@@ -120,7 +122,12 @@ class Server(CliTest):
         self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)  # again
         code, _, errors = self.ask("submit", self.scene(BLOCK % 3), "--idle", "--session", "block")
         self.assertEqual(code, 7, errors)
-        self.assertEqual(self.ask("submit", scene, "--session", "Not A Name")[0], 3)
+        code, _, errors = self.ask("submit", scene, "--session", "Not A Name")
+        self.assertEqual(code, 3)
+        self.assertEqual(errors.splitlines()[-1][:24], '--session: "Not A Name" ')
+        code, _, errors = self.ask("watch", "Not A Name")
+        self.assertEqual(code, 3)
+        self.assertIn("2 to 62 letters, digits or dashes", errors)
 
     def test_plan_names_parts_and_costs_without_a_session(self):
         code, output, errors = self.ask("plan", self.scene(BLOCK % 2), "--json")

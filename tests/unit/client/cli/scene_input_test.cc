@@ -242,6 +242,14 @@ TEST_F(SceneInputTest, FaultsFromTheServerGetTheirLines) {
                     absl::Cord(bad_request.SerializeAsString()));
   EXPECT_EQ(WithLines(*file, status).message(), "a.scene.json:2: seed: is unlucky");
   EXPECT_EQ(WithLines(*file, absl::NotFoundError("none")).message(), "none");
+  // What the command line said is not the file's fault.
+  auto& of_call = *bad_request.add_field_violations();
+  of_call.set_field("session_id");
+  of_call.set_description("\"ab\" is short");
+  status.SetPayload("type.googleapis.com/google.rpc.BadRequest",
+                    absl::Cord(bad_request.SerializeAsString()));
+  EXPECT_EQ(WithLines(*file, status).message(),
+            "--session: \"ab\" is short\na.scene.json:2: seed: is unlucky");
 }
 
 }  // namespace
