@@ -31,7 +31,7 @@ double LegendWidth(const Legend& legend, double height) {
 }
 
 void DrawLegend(const Legend& legend, double left, double baseline, double height, Image& image) {
-  const TextStyle style{.height = height};
+  const TextStyle style{.height = height, .rim = kRim};
   const int top = Round(baseline - height);
   const int side = Round(height);
   if (!legend.map_title.empty()) {

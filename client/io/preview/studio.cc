@@ -137,7 +137,8 @@ absl::Status Studio::Show(int64_t position) {
   if (shown_ == position) return absl::OkStatus();
   shown_ = -1;
   solids_.reset();
-  // Colours of pieces follow from all frames; nothing else in a picture does.
+  // Colours of pieces follow from all frames; of the rest only how crumbs are turned that no tet
+  // holds any more, too little to read all frames for.
   if (options_.color_by == ColorBy::kPiece) CLEAVE_RETURN_IF_ERROR(FollowTo(position));
   CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
   CLEAVE_RETURN_IF_ERROR(sequence_.Advance(frame));
@@ -157,12 +158,12 @@ absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
   const double margin = 1.3 * size;
   const double baseline = height_ - margin;
   const std::string time = TimeLabel(shown_time_, step_, survey_.times.back());
-  DrawText(time, margin, baseline, {.height = size, .pen = 0.16}, image);
+  DrawText(time, margin, baseline, {.height = size, .pen = 0.16, .rim = kRim}, image);
   const int64_t pieces = sequence_.piece_count();
   const std::string counts = absl::StrFormat(
       "%d %s, %d broken %s", pieces, pieces == 1 ? "piece" : "pieces",
       sequence_.surface().broken_edges, sequence_.surface().broken_edges == 1 ? "edge" : "edges");
-  const TextStyle faint{.height = 0.85 * size, .color = kFaint};
+  const TextStyle faint{.height = 0.85 * size, .color = kFaint, .rim = kRim};
   const double width = TextWidth(counts, faint);
   if (width + TextWidth(time, faint) + 5 * margin < options_.width) {
     DrawText(counts, options_.width - margin - width, baseline, faint, image);
@@ -173,7 +174,7 @@ absl::StatusOr<Image> Studio::Draw(int64_t position, const Camera& camera) {
 void Studio::DrawHead(Image& image) const {
   const double size = LetterHeight();
   const double margin = 1.3 * size;
-  const TextStyle bold{.height = 1.15 * size, .pen = 0.18};
+  const TextStyle bold{.height = 1.15 * size, .pen = 0.18, .rim = kRim};
   const std::string shown = Shortened(options_.title, options_.width - 2 * margin, bold);
   DrawText(shown, margin, margin + size, bold, image);
   const double width = LegendWidth(legend_, 0.85 * size);

@@ -71,21 +71,9 @@ void Blend(const Color& color, double part, uint8_t* pixel) {
   }
 }
 
-}  // namespace
-
-double TextWidth(absl::string_view text, const TextStyle& style) {
-  double width = 0;
-  for (size_t place = 0; place < text.size();) {
-    if (place > 0) width += kGap;
-    width += AddGlyph(NextGlyph(text, place), 0, 0, 1, nullptr);
-  }
-  return width * style.height / kCapital;
-}
-
-void DrawText(absl::string_view text, double left, double baseline, const TextStyle& style,
-              Image& image) {
-  const double step = style.height / kCapital;
-  const double half_pen = 0.5 * style.pen * style.height;
+// The strokes of a text with a pen of this half width, pixels.
+void DrawStrokes(absl::string_view text, double left, double baseline, double step, double half_pen,
+                 const Color& color, double opacity, Image& image) {
   for (size_t place = 0; place < text.size();) {
     std::vector<Segment> segments;
     const double width = AddGlyph(NextGlyph(text, place), left, baseline, step, &segments);
@@ -102,11 +90,35 @@ void DrawText(absl::string_view text, double left, double baseline, const TextSt
           nearest = std::min(nearest, Distance(segment, x + 0.5, y + 0.5));
         }
         const double cover = std::clamp(half_pen + 0.5 - nearest, 0.0, 1.0);
-        if (cover > 0) Blend(style.color, cover, image.at(x, y));
+        if (cover > 0) Blend(color, opacity * cover, image.at(x, y));
       }
     }
     left += (width + kGap) * step;
   }
+}
+
+}  // namespace
+
+double TextWidth(absl::string_view text, const TextStyle& style) {
+  double width = 0;
+  for (size_t place = 0; place < text.size();) {
+    if (place > 0) width += kGap;
+    width += AddGlyph(NextGlyph(text, place), 0, 0, 1, nullptr);
+  }
+  return width * style.height / kCapital;
+}
+
+void DrawText(absl::string_view text, double left, double baseline, const TextStyle& style,
+              Image& image) {
+  constexpr Color kRimColor{0.95f, 0.95f, 0.96f};
+  constexpr double kRimOpacity = 0.7;
+  const double step = style.height / kCapital;
+  const double half_pen = 0.5 * style.pen * style.height;
+  if (style.rim > 0) {
+    DrawStrokes(text, left, baseline, step, half_pen + style.rim * style.height, kRimColor,
+                kRimOpacity, image);
+  }
+  DrawStrokes(text, left, baseline, step, half_pen, style.color, 1, image);
 }
 
 std::string Shortened(absl::string_view text, double width, const TextStyle& style) {

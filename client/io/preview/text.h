@@ -14,7 +14,11 @@ struct TextStyle {
   double height = 10;
   double pen = 0.14;
   Color color{0.16f, 0.17f, 0.19f};
+  double rim = 0;  // as part of the height: how far a light rim goes, over whatever is behind
 };
+
+// A rim for text that pieces may fly behind.
+inline constexpr double kRim = 0.18;
 
 // Pixels from the first stroke to the last.
 double TextWidth(absl::string_view text, const TextStyle& style);

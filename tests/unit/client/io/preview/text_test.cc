@@ -97,5 +97,15 @@ TEST(Text, IsShortenedToWhatFits) {
   EXPECT_EQ(Shortened(text, 2, style), "");
 }
 
+TEST(Text, ARimTellsLettersFromWhatIsAsDarkBehindThem) {
+  const auto lightest = [](double rim) {
+    Image image(60, 20);
+    DrawText("33", 10, 15, {.height = 10, .color = {0, 0, 0}, .rim = rim}, image);
+    return *std::max_element(image.rgb.begin(), image.rgb.end());
+  };
+  EXPECT_EQ(lightest(0), 0);
+  EXPECT_GT(lightest(0.2), 150);
+}
+
 }  // namespace
 }  // namespace cleave
