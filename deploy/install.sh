@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what building and running Cleave needs on Debian 12, and nothing that is there already.
+# Installs what building and running Cleave needs on Debian 12, and nothing that is there already; with
+# --benchmarks also what core_stream_bench compares with. Usage: deploy/install.sh [--benchmarks]
 set -euo pipefail
 
 packages=(
@@ -14,6 +15,11 @@ packages=(
   python3 python3-grpcio python3-protobuf python3-numpy python3-zstandard    # the Python client
   libgtest-dev libgmock-dev                 # tests
 )
+case "${1:-}" in
+  '') ;;
+  --benchmarks) packages+=(libdraco-dev libmeshoptimizer-dev) ;;
+  *) echo "usage: deploy/install.sh [--benchmarks]" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

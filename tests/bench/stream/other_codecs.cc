@@ -140,4 +140,15 @@ std::vector<std::unique_ptr<OtherCodec>> MakeOtherCodecs() {
   return codecs;
 }
 
+std::vector<std::string> MissingCodecs() {
+  std::vector<std::string> missing;
+#ifndef CLEAVE_HAS_DRACO
+  missing.emplace_back("Draco");
+#endif
+#ifndef CLEAVE_HAS_MESHOPTIMIZER
+  missing.emplace_back("meshoptimizer");
+#endif
+  return missing;
+}
+
 }  // namespace cleave

@@ -19,6 +19,8 @@ class OtherCodec {
 
 // zstd on raw floats, delta and zstd, and what of Draco and meshoptimizer is installed.
 std::vector<std::unique_ptr<OtherCodec>> MakeOtherCodecs();
+// Which of the two this was built without.
+std::vector<std::string> MissingCodecs();
 
 }  // namespace cleave
 

@@ -165,6 +165,10 @@ void Compare(const Sequence& sequence) {
     for (const std::unique_ptr<OtherCodec>& codec : MakeOtherCodecs()) {
       MeasureOther(sequence, tolerance, *codec);
     }
+    for (const std::string& name : MissingCodecs()) {
+      std::printf("  %s: not compared, built without it (deploy/install.sh --benchmarks)\n",
+                  name.c_str());
+    }
     MeasureStream(sequence, tolerance, kPredictorTemporal, kCoderZstdPlanes, "stream, predictor 1");
     MeasureStream(sequence, tolerance, kPredictorInterpolation, kCoderZstdPlanes,
                   "stream, predictor 2, zstd");
