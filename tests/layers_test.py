@@ -103,9 +103,9 @@ def faults_of(path, text):
   found = []
   for _, header in INCLUDE.findall(text):
     if is_standard(header):
-      # parallel.h is where threads come from.
+      # parallel.cc is where threads come from.
       if (folder.startswith("core/") and header in NOT_IN_CORE and
-          path != "core/base/parallel.h"):
+          path != "core/base/parallel.cc"):
         found.append(f"{path}: <{header}> is not for the core")
     elif header.startswith("tests/") or not allowed(header, ARROWS[folder]):
       found.append(f"{path}: {folder} may not include {header}")

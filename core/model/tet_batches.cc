@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/base/parallel.h"
+
 namespace cleave {
 namespace {
 
@@ -128,6 +130,43 @@ void KeepAwake(TetBatches<T>& tets, std::span<uint8_t> asleep) {
   tets.kept = std::move(kept);
 }
 
+template <typename T>
+void ForEachChunk(const TetBatches<T>& tets,
+                  absl::FunctionRef<void(int64_t, int64_t, int64_t)> body) {
+  if (tets.kept) {
+    for (const std::vector<std::array<int32_t, 2>>& color : tets.kept->colors) {
+      ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
+        for (int64_t k = begin; k < end; ++k) {
+          const auto [first_run, end_run] = color[static_cast<size_t>(k)];
+          for (int64_t run = first_run; run < end_run; ++run) {
+            const auto [first, last] = tets.kept->runs[static_cast<size_t>(run)];
+            body(run, first, last);
+          }
+        }
+      });
+    }
+    return;
+  }
+  for (const std::vector<int32_t>& color : tets.coloring.colors) {
+    ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
+      for (int64_t k = begin; k < end; ++k) {
+        const int64_t chunk = color[static_cast<size_t>(k)];
+        const int64_t first = chunk * TetBatches<T>::kChunkBatches;
+        body(chunk, first, std::min(first + TetBatches<T>::kChunkBatches, tets.batch_count()));
+      }
+    });
+  }
+}
+
+template <typename T>
+void ForEachBatch(const TetBatches<T>& tets, absl::FunctionRef<void(int64_t, int64_t)> body) {
+  if (tets.kept) {
+    ForEachChunk(tets, [&](int64_t, int64_t first, int64_t last) { body(first, last); });
+    return;
+  }
+  ParallelFor(tets.batch_count(), 2048 / TetBatches<T>::kLanes, body);
+}
+
 template struct TetBatches<Double4>;
 template struct TetBatches<Float8>;
 template TetBatches<Double4> BuildTetBatches(const TetMesh&, const Incidence&,
@@ -135,5 +174,11 @@ template TetBatches<Double4> BuildTetBatches(const TetMesh&, const Incidence&,
 template void KeepAwake(TetBatches<Double4>&, std::span<uint8_t>);
 template void KeepAwake(TetBatches<Float8>&, std::span<uint8_t>);
 template TetBatches<Float8> BuildTetBatches(const TetMesh&, const Incidence&, std::vector<int32_t>);
+template void ForEachChunk(const TetBatches<Double4>&,
+                           absl::FunctionRef<void(int64_t, int64_t, int64_t)>);
+template void ForEachChunk(const TetBatches<Float8>&,
+                           absl::FunctionRef<void(int64_t, int64_t, int64_t)>);
+template void ForEachBatch(const TetBatches<Double4>&, absl::FunctionRef<void(int64_t, int64_t)>);
+template void ForEachBatch(const TetBatches<Float8>&, absl::FunctionRef<void(int64_t, int64_t)>);
 
 }  // namespace cleave

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "core/base/lanes.h"
 #include "core/base/matrix3.h"
-#include "core/base/parallel.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
 #include "core/model/chunk_coloring.h"
@@ -135,43 +135,14 @@ Matrix3<T> DisplacementGradient(const Matrix3<T>& moves, const Matrix3<T>& gradi
 
 // Runs body(chunk, first batch, end batch) over all chunks in the order of the colouring; where
 // batches are left out, over the runs that are kept instead.
-template <typename T, typename Body>
-void ForEachChunk(const TetBatches<T>& tets, const Body& body) {
-  if (tets.kept) {
-    for (const std::vector<std::array<int32_t, 2>>& color : tets.kept->colors) {
-      ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
-        for (int64_t k = begin; k < end; ++k) {
-          const auto [first_run, end_run] = color[static_cast<size_t>(k)];
-          for (int64_t run = first_run; run < end_run; ++run) {
-            const auto [first, last] = tets.kept->runs[static_cast<size_t>(run)];
-            body(run, first, last);
-          }
-        }
-      });
-    }
-    return;
-  }
-  for (const std::vector<int32_t>& color : tets.coloring.colors) {
-    ParallelFor(static_cast<int64_t>(color.size()), 1, [&](int64_t begin, int64_t end) {
-      for (int64_t k = begin; k < end; ++k) {
-        const int64_t chunk = color[static_cast<size_t>(k)];
-        const int64_t first = chunk * TetBatches<T>::kChunkBatches;
-        body(chunk, first, std::min(first + TetBatches<T>::kChunkBatches, tets.batch_count()));
-      }
-    });
-  }
-}
+template <typename T>
+void ForEachChunk(const TetBatches<T>& tets,
+                  absl::FunctionRef<void(int64_t, int64_t, int64_t)> body);
 
 // Runs body(first batch, end batch) over all batches that are not left out; for passes that write
 // only to their own tets.
-template <typename T, typename Body>
-void ForEachBatch(const TetBatches<T>& tets, const Body& body) {
-  if (tets.kept) {
-    ForEachChunk(tets, [&](int64_t, int64_t first, int64_t last) { body(first, last); });
-    return;
-  }
-  ParallelFor(tets.batch_count(), 2048 / TetBatches<T>::kLanes, body);
-}
+template <typename T>
+void ForEachBatch(const TetBatches<T>& tets, absl::FunctionRef<void(int64_t, int64_t)> body);
 
 }  // namespace cleave
 
