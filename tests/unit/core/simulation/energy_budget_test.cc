@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "core/simulation/simulation.h"
@@ -18,7 +20,8 @@ constexpr double kTolerance = 1e-4;  // of the largest energy in the budget so f
 
 struct Budget {
   FrameReport last;
-  double largest = 0;  // J, of any energy in the budget so far
+  double largest = 0;          // J, of any energy in the budget so far
+  double most_in_contact = 0;  // J
 };
 
 // Runs the scene and holds every frame's budget to the tolerance.
@@ -40,7 +43,13 @@ Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic
                 kTolerance * budget.largest)
         << "frame " << frame;
     EXPECT_GE(taken, dissipated - kTolerance * budget.largest) << "frame " << frame;
+    EXPECT_LE(held, report->external_work + initial_kinetic_energy + kTolerance * budget.largest);
     dissipated = taken;
+    // What is lost to one thing never comes back.
+    EXPECT_GE(report->fracture_energy, budget.last.fracture_energy) << "frame " << frame;
+    EXPECT_GE(report->plastic_work, budget.last.plastic_work) << "frame " << frame;
+    EXPECT_GE(report->friction_dissipation, budget.last.friction_dissipation) << "frame " << frame;
+    budget.most_in_contact = std::max(budget.most_in_contact, report->contact_energy);
     budget.last = *report;
   }
   return budget;
@@ -143,6 +152,41 @@ TEST(EnergyBudget, ClosesForADuctileBarWithFibres) {
     scene.materials[0].fibres.push_back({5e5, ConstantDirection{{1, 1, 0}}});
     const Budget budget = MustClose(scene, TwistedBarMesh());
     EXPECT_GT(budget.last.plastic_work, 0.05 * budget.largest);
+  }
+}
+
+// A ductile bar with fibres and impurities over a rough floor: pressed from all sides for a while,
+// pulled and twisted by a grip that lets go of what has come off, and driven back by a traction, so
+// that the pieces rub against each other and the floor.
+TEST(EnergyBudget, ClosesWithEveryPartAtOnce) {
+  for (const double flow_rate : {std::numeric_limits<double>::infinity(), 50.0}) {
+    Scene scene = Bar(0.005, 100);
+    Material& metal = scene.materials[0];
+    metal.youngs_modulus = 1e6;
+    metal.plasticity = Plasticity{.yield_stress = 2e4, .hardening = 5e5, .flow_rate = flow_rate};
+    metal.tensile_strength = 8e4;
+    metal.fibres.push_back({2e5, ConstantDirection{{1, 1, 0}}});
+    scene.impurities = Impurities{.noise = 0.1};
+    scene.gravity = Vec3{0, 0, -9.81};
+    scene.contact = Contact{.stiffness = 5, .friction = 0.3};
+    scene.colliders.emplace_back().shape = PlaneShape{{0, 0, -0.25}, {0, 0, 1}};
+    scene.colliders[0].friction = 0.4;
+    Motion& grip = AddMotion(scene, "right");
+    grip.rotation_center = {3, 0.5, 0.5};
+    grip.rotation_axis = {1, 0, 0};
+    grip.keyframes = {{0, {0, 0, 0}, 0}, {0.3, {0.9, 0, 0}, 0.5}};
+    grip.release = Release{.pieces = 2};
+    AddBoxSet(scene, "all", {-1, -1, -1}, {4, 2, 2});
+    scene.loads.push_back(
+        {"all", SurfacePressure{3e3}, {{0, 0}, {0.05, 1}}, Release{.time = 0.15}});
+    scene.loads.push_back(
+        {"right", SurfaceTraction{{-4e3, 0, -1e3}}, {{0.2, 0}, {0.25, 1}}, Release{.time = 0.5}});
+    const Budget budget = MustClose(scene, BarMesh());
+    EXPECT_GT(budget.last.fragments, 1);
+    EXPECT_GT(budget.last.plastic_work, 0.01 * budget.largest);
+    EXPECT_GT(budget.last.fracture_energy, 0.005 * budget.largest);
+    EXPECT_GT(budget.last.friction_dissipation, 0.005 * budget.largest);
+    EXPECT_GT(budget.most_in_contact, 0.001 * budget.largest);
   }
 }
 

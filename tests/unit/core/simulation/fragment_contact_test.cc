@@ -23,7 +23,6 @@ TetMesh TwoBlocks() {
 
 Scene Collision(double dt, double friction) {
   Scene scene = TightScene(1e6, 0.3, 1000, dt);
-  scene.quality.residual_tolerance = 1e-9;
   scene.contact = Contact{5, friction};
   AddBoxSet(scene, "left", {-1, -1, -1}, {0.35, 1, 1});
   AddBoxSet(scene, "right", {0.4, -1, -1}, {2, 1, 1});
@@ -45,6 +44,34 @@ std::vector<double> Masses(const TetMesh& mesh, double density) {
   return masses;
 }
 
+// How far the common centre of mass is from where momentum would have it, over how far the fastest
+// block went.
+double Drift(const Simulation& simulation, const TetMesh& mesh, const std::vector<double>& masses) {
+  Vec3 way{0, 0, 0};
+  for (size_t n = 0; n < masses.size(); ++n) {
+    for (size_t i = 0; i < 3; ++i)
+      way[i] += masses[n] * (simulation.positions()[n][i] - mesh.rest_positions[n][i]);
+  }
+  const double time = simulation.time(), mass = 27;
+  return std::hypot(way[0] - mass * (3 - 1) * time, way[1], way[2] - mass * 0.5 * time) /
+         (mass * 3 * time);
+}
+
+TEST(FragmentContact, MomentumIsKeptHoweverLooselyStepsAreSolved) {
+  const TetMesh mesh = TwoBlocks();
+  const std::vector<double> masses = Masses(mesh, 1000);
+  for (const double friction : {0.0, 0.4}) {
+    Scene scene = Collision(2e-2, friction);
+    scene.quality = Quality{};
+    auto simulation = *Simulation::Create(scene, mesh, {});
+    double contact = 0;
+    for (int frame = 0; frame < 10; ++frame)
+      contact = std::max(contact, MustAdvance(*simulation).contact_energy);
+    EXPECT_GT(contact, 1e-3);
+    EXPECT_LT(Drift(*simulation, mesh, masses), 1e-8);
+  }
+}
+
 TEST(FragmentContact, TwoBlocksThatCollideKeepMomentumAndMakeNoEnergy) {
   const TetMesh mesh = TwoBlocks();
   const std::vector<double> masses = Masses(mesh, 1000);
@@ -62,15 +89,9 @@ TEST(FragmentContact, TwoBlocksThatCollideKeepMomentumAndMakeNoEnergy) {
                   energy * (1 + 1e-9));
       }
       EXPECT_GT(contact, 1e-3);
-      Vec3 way{0, 0, 0};
-      for (size_t n = 0; n < masses.size(); ++n) {
-        for (size_t i = 0; i < 3; ++i)
-          way[i] += masses[n] * (simulation->positions()[n][i] - mesh.rest_positions[n][i]);
-      }
-      const double time = simulation->time();
-      EXPECT_NEAR(way[0], 27 * (3 - 1) * time, 27 * 4 * time * 1e-9);
-      EXPECT_NEAR(way[1], 0, 27 * 4 * time * 1e-9);
-      EXPECT_NEAR(way[2], 27 * 0.5 * time, 27 * 4 * time * 1e-9);
+      // Pairs push and pull as much as they are pushed and pulled, in forces and in the matrix, so
+      // what is left is rounding.
+      EXPECT_LT(Drift(*simulation, mesh, masses), 1e-14);
       EXPECT_NEAR(Budget(report, energy), 0, 1e-5 * energy);
       EXPECT_GE(report.friction_dissipation, 0);
       EXPECT_EQ(report.friction_dissipation > 0, friction > 0);
