@@ -23,7 +23,7 @@ POSIX = "<posix>"
 ARROWS = {
     "core/base": ["tbb", "xxhash.h", "openssl", "nmmintrin.h", "immintrin.h"],
     "core/mesh": ["core/mesh", "Eigen"],
-    "core/scene": ["core/scene", "core/mesh"],
+    "core/scene": ["core/scene", "core/mesh", "Eigen"],
     "core/material": ["core/material", "core/scene", "core/mesh", "Eigen"],
     "core/damage": ["core/damage", "core/mesh", "core/scene", "Eigen"],
     "core/contact": ["core/contact", "core/scene", "core/mesh", "Eigen"],

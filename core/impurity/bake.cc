@@ -10,6 +10,7 @@
 #include "core/impurity/surface_paint.h"
 #include "core/mesh/blades.h"
 #include "core/scene/impurity_blades.h"
+#include "core/scene/impurity_places.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
@@ -136,10 +137,7 @@ BakedImpurities BakeImpurities(const Scene& scene, const TetMesh& mesh, Edges ed
   if (WeakensEdges(impurities)) baked.edge_factors.assign(edges.size(), 1);
   for (size_t k = 0; k < impurities.layers.size(); ++k) {
     const ImpurityLayer& layer = impurities.layers[k];
-    // Apart from the scene's own noise and from those of other layers.
-    const uint64_t seed =
-        layer.seed ? (uint64_t{1} << 32) + *layer.seed : ((uint64_t{2} + k) << 32) + scene.seed;
-    const Shares shares = SharesOf(layer, seed, mesh, edges);
+    const Shares shares = SharesOf(layer, LayerSeed(scene, k), mesh, edges);
     const std::vector<uint8_t> chosen = Chosen(layer.node_set, scene, mesh, regions);
     if (layer.potency) {
       for (size_t node = 0; node < chosen.size(); ++node) {

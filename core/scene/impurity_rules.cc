@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
-#include "core/mesh/surface_distance.h"
 #include "core/scene/checker.h"
-#include "core/scene/impurity_blades.h"
+#include "core/scene/impurity_reach.h"
 #include "core/scene/limits.h"
 
 namespace cleave {
 namespace {
+
+constexpr absl::string_view kNothing = "is 0 everywhere: the layer does nothing";
 
 struct ImpuritySourceRules {
   std::string layer;
@@ -28,6 +28,9 @@ struct ImpuritySourceRules {
       faults.Error(field, "is empty; a share for every node or vertex is required");
     if (!check.List(field, shares.size(), limits::kMaxNodes)) return;
     for (size_t k = 0; k < shares.size(); ++k) check.Within(cleave::At(field, k), shares[k], 0, 1);
+    if (!shares.empty() &&
+        std::all_of(shares.begin(), shares.end(), [](double x) { return x == 0; }))
+      faults.Warning(field, kNothing);
   }
   void Depth(const std::string& field, const std::optional<double>& depth) {
     if (depth) check.Above(field, *depth, 0, limits::kMaxLength);
@@ -202,6 +205,10 @@ struct ImpuritySourceRules {
                    absl::StrCat("has ", texture.values.size(), " bytes; ", texture.width, " x ",
                                 texture.height, " texels have ", texels));
     }
+    const uint8_t none = texture.invert ? 255 : 0;
+    if (!texture.values.empty() && std::all_of(texture.values.begin(), texture.values.end(),
+                                               [none](uint8_t value) { return value == none; }))
+      faults.Warning(field, kNothing);
   }
 };
 
@@ -226,58 +233,6 @@ void CheckLayer(const std::string& field, const ImpurityLayer& layer,
     faults.Error(field + ".weakening",
                  "noise gives nodes random potencies and marks no edges; set its potency");
   }
-}
-
-// The edges of all tets, each once for every tet round it.
-std::vector<std::array<int32_t, 2>> EdgesOfTets(const TetMesh& mesh) {
-  std::vector<std::array<int32_t, 2>> edges;
-  edges.reserve(6 * mesh.tets.size());
-  for (const auto& tet : mesh.tets) {
-    for (const auto& [i, j] : kTetEdges)
-      edges.push_back({tet[static_cast<size_t>(i)], tet[static_cast<size_t>(j)]});
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
-
-// Strokes that cross nothing, each by its name; a pattern where all of it misses.
-void CheckHits(const std::string& field, const ImpurityLayer& layer, const TetMesh& mesh,
-               const std::vector<std::array<int32_t, 2>>& edges, Faults& faults) {
-  constexpr absl::string_view kMisses =
-      "crosses no edge of the mesh: it misses the body, or is finer than the mesh";
-  const bool stroke = std::holds_alternative<Strokes>(layer.source);
-  CurveBlades cut = stroke ? BladesOf(std::get<Strokes>(layer.source))
-                           : BladesOf(std::get<SegmentPattern>(layer.source));
-  // All of a pattern counts as one curve.
-  if (!stroke) std::fill(cut.curve_of.begin(), cut.curve_of.end(), 0);
-  const size_t curves = stroke ? std::get<Strokes>(layer.source).curves.size() : 1;
-  const std::vector<uint8_t> crosses =
-      Blades(std::move(cut.blades), mesh).CrossingCurves(edges, cut.curve_of, curves);
-  for (size_t c = 0; c < curves; ++c) {
-    if (crosses[c] == 0)
-      faults.Error(stroke ? At(field + ".strokes.curves", c) : field + ".pattern", kMisses);
-  }
-}
-
-// A painted surface that no node is in reach of, as of one in another unit.
-void CheckPaintReach(const std::string& field, const SurfacePaint& paint, double reach,
-                     const TetMesh& mesh, Faults& faults) {
-  const auto refuse = [&] {
-    faults.Error(field, absl::StrCat("its surface is farther than ", reach,
-                                     " m, depth and falloff, from every node of the body; "
-                                     "`unit_scale` says what its unit is"));
-  };
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const auto less = [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; };
-    const auto [low, high] =
-        std::minmax_element(mesh.rest_positions.begin(), mesh.rest_positions.end(), less);
-    const auto [first, last] =
-        std::minmax_element(paint.vertices.begin(), paint.vertices.end(), less);
-    if ((*first)[axis] - reach <= (*high)[axis] && (*last)[axis] + reach >= (*low)[axis]) continue;
-    return refuse();
-  }
-  if (!SurfaceReaches(paint.vertices, paint.triangles, reach, mesh.rest_positions)) refuse();
 }
 
 }  // namespace
@@ -310,7 +265,8 @@ void CheckImpurities(const Impurities& impurities, const std::set<std::string>& 
     CheckLayer(At("impurities.layers", k), impurities.layers[k], names, faults, check);
 }
 
-void CheckImpuritiesOfMesh(const Impurities& impurities, const TetMesh& mesh, Faults& faults) {
+void CheckImpuritiesOfMesh(const Scene& scene, const TetMesh& mesh, Faults& faults) {
+  const Impurities& impurities = *scene.impurities;
   // An empty array is absent, or CheckImpurities has named it.
   const auto check_count = [&](const std::string& field, size_t count) {
     if (count == 0 || static_cast<int64_t>(count) == mesh.node_count()) return;
@@ -318,30 +274,23 @@ void CheckImpuritiesOfMesh(const Impurities& impurities, const TetMesh& mesh, Fa
         field, absl::StrCat("has ", count, " shares; the mesh has ", mesh.node_count(), " nodes"));
   };
   check_count("impurities.map", impurities.map.size());
+  std::set<std::string> names;
+  for (const NodeSet& set : scene.node_sets) names.insert(set.name);
   std::vector<std::array<int32_t, 2>> edges;
   for (size_t k = 0; k < impurities.layers.size(); ++k) {
     const ImpurityLayer& layer = impurities.layers[k];
     const std::string field = At("impurities.layers", k);
-    if (const auto* values = std::get_if<NodeValues>(&layer.source)) {
+    if (const auto* values = std::get_if<NodeValues>(&layer.source))
       check_count(field + ".node_values.shares", values->shares.size());
-    } else if (const auto* paint = std::get_if<SurfacePaint>(&layer.source)) {
-      if (paint->vertices.empty()) {
-        check_count(field + ".paint.shares", paint->shares.size());
-      } else {
-        Faults own;
-        ImpuritySourceRules{field, own, Checker(own)}(*paint);
-        if (own.ok())
-          CheckPaintReach(field + ".paint", *paint, paint->depth + layer.falloff, mesh, faults);
-      }
-    } else if (std::holds_alternative<Strokes>(layer.source) ||
-               std::holds_alternative<SegmentPattern>(layer.source)) {
-      Faults own;
-      Checker check(own);
-      std::visit(ImpuritySourceRules{field, own, check}, layer.source);
-      if (!own.ok()) continue;
-      if (edges.empty()) edges = EdgesOfTets(mesh);
-      CheckHits(field, layer, mesh, edges, faults);
-    }
+    const auto* paint = std::get_if<SurfacePaint>(&layer.source);
+    if (paint != nullptr && paint->vertices.empty())
+      check_count(field + ".paint.shares", paint->shares.size());
+    Faults own;
+    Checker check(own);
+    CheckLayer(field, layer, names, own, check);
+    if (!own.ok()) continue;
+    if (edges.empty()) edges = EdgesOfTets(mesh);
+    CheckReach(scene, k, mesh, edges, faults);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/base/faults.h"
 #include "core/mesh/tet_mesh.h"
-#include "core/scene/impurities.h"
+#include "core/scene/scene.h"
 
 namespace cleave {
 
@@ -14,10 +14,10 @@ namespace cleave {
 void CheckImpurities(const Impurities& impurities, const std::set<std::string>& names,
                      Faults& faults);
 
-// The rules of ValidateSceneWithMesh for them: arrays have the mesh's size, strokes and patterns
-// cross edges of it. Precondition: the mesh passed CheckMesh. Layers that CheckImpurities refuses
-// are passed over.
-void CheckImpuritiesOfMesh(const Impurities& impurities, const TetMesh& mesh, Faults& faults);
+// The rules of ValidateSceneWithMesh for them: arrays have the mesh's size, and every layer meets
+// the body (CheckReach). Preconditions: the scene has impurities; the mesh passed CheckMesh. Layers
+// that CheckImpurities refuses are passed over.
+void CheckImpuritiesOfMesh(const Scene& scene, const TetMesh& mesh, Faults& faults);
 
 }  // namespace cleave
 

@@ -310,7 +310,7 @@ Faults ValidateSceneWithMesh(const Scene& scene, const TetMesh& mesh) {
   CheckCoverage(scene, mesh, regions, faults);
   CheckSelections(scene, mesh, regions, faults);
   CheckFibreArrays(scene, mesh, faults);
-  if (scene.impurities.has_value()) CheckImpuritiesOfMesh(*scene.impurities, mesh, faults);
+  if (scene.impurities.has_value()) CheckImpuritiesOfMesh(scene, mesh, faults);
   return faults;
 }
 

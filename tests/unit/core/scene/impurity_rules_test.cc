@@ -56,19 +56,31 @@ ImpurityLayer Layer(ImpuritySource source) {
   return layer;
 }
 
+// In a scene with the set "left", all nodes of a side of the body.
 Faults Check(const ImpurityLayer& layer) {
-  Impurities impurities;
-  impurities.layers = {Layer(NoiseField{}), layer};
+  Scene scene;
+  scene.node_sets = {{"left", {BoxSelector{{0, 0, 0}, {0, 1, 1}}}}};
+  scene.impurities.emplace();
+  scene.impurities->layers = {Layer(NoiseField{}), layer};
   Faults faults;
-  CheckImpurities(impurities, {"left"}, faults);
-  CheckImpuritiesOfMesh(impurities, Cube(), faults);
+  CheckImpurities(*scene.impurities, {"left"}, faults);
+  CheckImpuritiesOfMesh(scene, Cube(), faults);
   return faults;
+}
+ImpurityLayer OfTheLeft(ImpurityLayer layer) {
+  layer.node_set = "left";
+  return layer;
+}
+ImpurityLayer WeakeningOnly(ImpurityLayer layer) {
+  layer.potency.reset();
+  layer.weakening = 0.5;
+  return layer;
 }
 
 TEST(ImpurityRules, AcceptEverySource) {
   for (const ImpuritySource& source :
        {ImpuritySource(NodeValues{std::vector<double>(27, 0.5)}), ImpuritySource(NoiseField{}),
-        ImpuritySource(BandField{.width = 0.1}), ImpuritySource(PocketField{3, 0.1}),
+        ImpuritySource(BandField{.width = 0.1}), ImpuritySource(PocketField{3, 0.4}),
         ImpuritySource(Across()), ImpuritySource(Cross()), ImpuritySource(Painted()),
         ImpuritySource(Textured())}) {
     const Faults faults = Check(Layer(source));
@@ -199,11 +211,71 @@ TEST(ImpurityRules, NameTheFieldOfEveryKindOfFault) {
                             [](auto& p) {
                               for (Vec3& vertex : p.vertices) vertex[2] = -3;
                             })},
+      {".bands", Layer(BandField{.position = 3, .width = 0.1})},     // misses
+      {".bands", Layer(BandField{.position = 0.25, .width = 0.1})},  // between two layers of nodes
+      {".pockets", Layer(PocketField{2, 1e-6})},                     // smaller than cells
+      // One node, and no edge.
+      {".bands", WeakeningOnly(Layer(BandField{
+                     .shape = BandShape::kSpheres, .center = {0.5, 0.5, 0.5}, .width = 0.1}))},
+      {".node_set", OfTheLeft(Layer(BandField{.axis = {1, 0, 0}, .position = 1, .width = 0.1}))},
+      {".node_set", OfTheLeft(WeakeningOnly(Layer(Across())))},  // one end of each edge
+      {".node_set", OfTheLeft(Spoilt<Strokes>(Across(),
+                                              [](auto& s) {
+                                                s.curves = {{{{0.7, -1, 0}, {0.7, 2, 0}}}};
+                                              }))},
+      {".node_set", OfTheLeft(Spoilt<SegmentPattern>(Cross(),
+                                                     [](auto& p) {
+                                                       p.curves.erase(p.curves.begin());
+                                                       p.origin = {0.8, 0.4, 0};
+                                                     }))},
+      {".node_set", OfTheLeft(Spoilt<SurfacePaint>(Painted(),
+                                                   [](auto& p) {
+                                                     p.vertices = {{1, 0, 0}, {1, 1, 0}, {1, 0, 1}};
+                                                   }))},
   };
   for (const auto& [field, layer] : cases) {
     const Faults faults = Check(layer);
     ASSERT_EQ(faults.errors().size(), 1u) << field << ": " << faults.ToStatus();
     EXPECT_EQ(faults.errors()[0].field, "impurities.layers[1]" + field) << faults.ToStatus();
+  }
+}
+
+TEST(ImpurityRules, AcceptLayersThatReachTheirSet) {
+  ImpurityLayer near = Layer(Across());  // crosses no edge of the set, but falls off there
+  std::get<Strokes>(near.source).curves = {{{{0.7, -1, 0}, {0.7, 2, 0}}}};
+  near.falloff = 0.8;
+  Strokes strokes = Across();
+  strokes.curves = {{{{0.2, -1, 0}, {0.2, 2, 0}}}};
+  SurfacePaint own;  // on the body's own surface
+  own.shares.assign(27, 1);
+  own.depth = 0.01;
+  BandField bands{.axis = {1, 0, 0}, .position = 0, .width = 0.1};
+  for (const ImpurityLayer& layer :
+       {near, Layer(Across()), Layer(Cross()), Layer(strokes), Layer(own), Layer(bands),
+        WeakeningOnly(Layer(bands)), Layer(PocketField{50, 0.5}), Layer(NoiseField{}),
+        Layer(Painted())}) {
+    const Faults faults = Check(OfTheLeft(layer));
+    EXPECT_TRUE(faults.ok()) << layer.source.index() << ": " << faults.ToStatus();
+  }
+}
+
+TEST(ImpurityRules, WarnOfValuesThatAreAllZero) {
+  SurfacePaint black = Textured(), white = black, painted = Painted();
+  black.texture->values = {0, 0};
+  white.texture->values = {255, 255};
+  white.texture->invert = true;
+  painted.shares = {0, 0, 0};
+  const std::vector<std::pair<std::string, ImpuritySource>> cases = {
+      {".node_values.shares", NodeValues{std::vector<double>(27, 0)}},
+      {".paint.shares", painted},
+      {".paint.texture", black},
+      {".paint.texture", white}};
+  for (const auto& [field, source] : cases) {
+    const Faults faults = Check(Layer(source));
+    EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+    ASSERT_EQ(faults.warnings().size(), 1u) << field;
+    EXPECT_EQ(faults.warnings()[0].field, "impurities.layers[1]" + field);
+    EXPECT_THAT(faults.warnings()[0].description, HasSubstr("does nothing"));
   }
 }
 
