@@ -93,14 +93,49 @@ std::vector<uint8_t> Blades::CrossingCurves(std::span<const std::array<int32_t, 
   return crosses;
 }
 
-std::vector<double> Blades::DistancesOutside(double reach) const {
+std::vector<uint8_t> Blades::HoldingCurves(std::span<const int32_t> curve_of, size_t curves) const {
+  const PlaneGrid grid = GrooveGrid(0);
+  std::vector<uint8_t> holds(curves, 0);
+  for (const Vec3& place : mesh_.rest_positions) {
+    const Vec2 at = view_.Across(place);
+    std::optional<bool> deep;  // below the depth
+    grid.Near({at, at}, [&](int32_t id) {
+      const BladeSegment& segment = set_.segments[static_cast<size_t>(id)];
+      uint8_t& held = holds[static_cast<size_t>(curve_of[static_cast<size_t>(id)])];
+      if (held != 0 || std::max(segment.radii[0], segment.radii[1]) <= 0 ||
+          OutsideAcross(segment, at) > 0)
+        return;
+      if (!deep) deep = depth_ && depth_->At(place) > set_.depth;
+      if (!*deep) held = 1;
+    });
+  }
+  return holds;
+}
+
+double Blades::OutsideAcross(const BladeSegment& segment, const Vec2& at) const {
+  const Vec2 start = view_.Across(segment.start), stop = view_.Across(segment.end);
+  const Vec2 run = {stop[0] - start[0], stop[1] - start[1]};
+  const double squared = run[0] * run[0] + run[1] * run[1];
+  const double along = run[0] * (at[0] - start[0]) + run[1] * (at[1] - start[1]);
+  const double share = squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0;
+  const double across =
+      std::hypot(at[0] - start[0] - share * run[0], at[1] - start[1] - share * run[1]);
+  const double radius = segment.radii[0] + share * (segment.radii[1] - segment.radii[0]);
+  return std::max(0.0, across - radius);
+}
+
+PlaneGrid Blades::GrooveGrid(double reach) const {
   std::vector<PlaneBox> boxes;
   boxes.reserve(set_.segments.size());
   for (const BladeSegment& segment : set_.segments) {
     boxes.push_back(BoxOf(view_.Across(segment.start), view_.Across(segment.end)));
     boxes.back().Grow(reach + std::max(segment.radii[0], segment.radii[1]) + margin_);
   }
-  const PlaneGrid grid(boxes);
+  return PlaneGrid(boxes);
+}
+
+std::vector<double> Blades::DistancesOutside(double reach) const {
+  const PlaneGrid grid = GrooveGrid(reach);
   std::vector<double> distances(mesh_.rest_positions.size(),
                                 std::numeric_limits<double>::infinity());
   ParallelFor(mesh_.node_count(), kGrain, [&](int64_t begin, int64_t end) {
@@ -109,16 +144,7 @@ std::vector<double> Blades::DistancesOutside(double reach) const {
       const Vec2 at = view_.Across(mesh_.rest_positions[node]);
       double& distance = distances[node];
       grid.Near({at, at}, [&](int32_t id) {
-        const BladeSegment& segment = set_.segments[static_cast<size_t>(id)];
-        const Vec2 start = view_.Across(segment.start), stop = view_.Across(segment.end);
-        const Vec2 run = {stop[0] - start[0], stop[1] - start[1]};
-        const double squared = run[0] * run[0] + run[1] * run[1];
-        const double along = run[0] * (at[0] - start[0]) + run[1] * (at[1] - start[1]);
-        const double share = squared > 0 ? std::clamp(along / squared, 0.0, 1.0) : 0;
-        const double across =
-            std::hypot(at[0] - start[0] - share * run[0], at[1] - start[1] - share * run[1]);
-        const double radius = segment.radii[0] + share * (segment.radii[1] - segment.radii[0]);
-        distance = std::min(distance, std::max(0.0, across - radius));
+        distance = std::min(distance, OutsideAcross(set_.segments[static_cast<size_t>(id)], at));
       });
       if (distance > reach) distance = std::numeric_limits<double>::infinity();
       if (!depth_ || std::isinf(distance)) continue;

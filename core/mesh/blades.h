@@ -46,6 +46,9 @@ class Blades {
   std::vector<uint8_t> CrossingCurves(std::span<const std::array<int32_t, 2>> edges,
                                       std::span<const int32_t> curve_of, size_t curves) const;
 
+  // Whether the groove of each of the curves holds a node. A curve without width has none.
+  std::vector<uint8_t> HoldingCurves(std::span<const int32_t> curve_of, size_t curves) const;
+
   // How far every node is outside the grooves, m: across the direction, from the radius of the
   // closest point of a segment's line on; along it, below the depth. 0 inside; infinite from
   // `reach` on.
@@ -53,6 +56,9 @@ class Blades {
 
  private:
   PlaneGrid SegmentGrid() const;
+  PlaneGrid GrooveGrid(double reach) const;  // m round the grooves
+  // How far a place in the plane is outside a segment's groove, m.
+  double OutsideAcross(const BladeSegment& segment, const Vec2& at) const;
   bool Crosses(const BladeSegment& blade, const Vec3& a, const Vec3& b) const;
 
   const BladeSet set_;

@@ -18,6 +18,9 @@
 namespace cleave {
 namespace {
 
+constexpr char kCrossesNone[] =
+    "crosses no edge of the mesh: it misses the body, or is finer than the mesh";
+
 // Nodes and edges of the mesh that a layer acts on, nonzero for each.
 struct Reached {
   std::vector<uint8_t> nodes;
@@ -88,13 +91,7 @@ class ReachRules {
  private:
   // Of sources that have all nodes near a place.
   void CheckWithin(const std::string& field, const std::vector<double>& distances) {
-    Reached reached;
-    for (const double distance : distances)
-      reached.nodes.push_back(distance <= 0 || distance < layer_.falloff ? 1 : 0);
-    for (const auto& [a, b] : edges_) {
-      reached.edges.push_back(reached.nodes[static_cast<size_t>(a)] &
-                              reached.nodes[static_cast<size_t>(b)]);
-    }
+    const Reached reached = Within(distances, layer_.falloff);
     if (!ActsOn(reached, false)) {
       faults_.Error(field, absl::StrCat("hold no ", layer_.potency ? "node" : "edge",
                                         " of the mesh: they miss the body, or are finer than the "
@@ -112,14 +109,17 @@ class ReachRules {
     const Blades blades(std::move(cut.blades), mesh_);
     const std::vector<uint8_t> crosses =
         blades.CrossingCurves(edges_, cut.curve_of, curves.value_or(1));
+    // A curve beside the body or within a cell may be wide.
+    std::vector<uint8_t> holds(crosses.size(), 0);
+    const bool all_cross = std::count(crosses.begin(), crosses.end(), 0) == 0;
+    if (wide && !all_cross) holds = blades.HoldingCurves(cut.curve_of, crosses.size());
     bool all = true;
     for (size_t c = 0; c < crosses.size(); ++c) {
-      if (crosses[c] != 0) continue;
+      if (crosses[c] != 0 || holds[c] != 0) continue;
       all = false;
-      faults_.Error(curves ? At(field + ".curves", c) : field,
-                    "crosses no edge of the mesh: it misses the body, or is finer than the mesh");
+      faults_.Error(curves ? At(field + ".curves", c) : field, kCrossesNone);
     }
-    if (!all || nodes_of_set_.empty()) return;
+    if (!all || (all_cross && nodes_of_set_.empty())) return;
     Reached reached{std::vector<uint8_t>(mesh_.rest_positions.size(), 0),
                     blades.CrossedEdges(edges_)};
     std::vector<double> outside;
@@ -131,7 +131,21 @@ class ReachRules {
       if (wide && outside[a] <= 0 && outside[b] <= 0) reached.edges[edge] = 1;
       if (reached.edges[edge] != 0) reached.nodes[a] = reached.nodes[b] = 1;
     }
-    if (!ActsOn(reached, true)) RefuseSet();
+    if (ActsOn(reached, true)) return;
+    if (!nodes_of_set_.empty()) return RefuseSet();
+    faults_.Error(field, kCrossesNone);
+  }
+
+  // Nodes less than `reach` (m) outside, and the edges between them.
+  Reached Within(const std::vector<double>& distances, double reach) const {
+    Reached reached;
+    for (const double distance : distances)
+      reached.nodes.push_back(distance <= 0 || distance < reach ? 1 : 0);
+    for (const auto& [a, b] : edges_) {
+      reached.edges.push_back(reached.nodes[static_cast<size_t>(a)] &
+                              reached.nodes[static_cast<size_t>(b)]);
+    }
+    return reached;
   }
 
   // A potency acts on nodes, a weakening on edges with both ends in the set.

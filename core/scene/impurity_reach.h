@@ -18,7 +18,7 @@ namespace cleave {
 std::vector<std::array<int32_t, 2>> EdgesOfTets(const TetMesh& mesh);
 
 // Names what of layer `k` is nowhere on the body, as of something in another unit or finer than
-// the mesh: every stroke that crosses no edge; a pattern, bands, pockets or a painted surface where
+// the mesh: every stroke that crosses no edge and whose groove holds none; a pattern, bands, pockets or a painted surface where
 // none of it meets the body; and any of them where no node that it reaches is in the layer's set.
 // `edges` are those of the mesh. Preconditions: CheckImpurities finds no error in the layer; the
 // mesh passed CheckMesh.

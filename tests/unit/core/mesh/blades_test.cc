@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -260,6 +261,36 @@ TEST(Blades, DistancesAreThoseToSegmentsAcrossAndBelowThem) {
   }
   EXPECT_GT(inside, 3);
   EXPECT_GT(near, 10);
+}
+
+TEST(Blades, HoldNodesInTheGroovesOfTheirCurves) {
+  const TetMesh mesh = WholeMesh(3, 8);
+  for (const double depth : {std::numeric_limits<double>::infinity(), 17.3}) {
+    BladeSet set;
+    set.depth = depth;
+    Draws draws(5);
+    std::vector<int32_t> curve_of;
+    for (int k = 0; k < 60; ++k) {  // two to a curve; some are dots, some without width
+      const Vec3 start = draws.Point(50), end = k % 3 == 0 ? start : draws.Point(50);
+      const double radius = k % 5 == 0 ? 0 : 1 + k % 7;
+      set.segments.push_back({start, end, {radius, radius}});
+      curve_of.push_back(k / 2);
+    }
+    const std::vector<uint8_t> holds = Blades(set, mesh).HoldingCurves(curve_of, 30);
+    int count = 0;
+    for (size_t c = 0; c < 30; ++c) {
+      BladeSet alone = set;
+      alone.segments.assign(set.segments.begin() + 2 * static_cast<long>(c),
+                            set.segments.begin() + 2 * static_cast<long>(c) + 2);
+      std::erase_if(alone.segments, [](const auto& segment) { return segment.radii[0] == 0; });
+      const std::vector<double> outside = Blades(alone, mesh).DistancesOutside(0);
+      const bool expected = std::count(outside.begin(), outside.end(), 0) > 0;
+      EXPECT_EQ(holds[c] != 0, expected) << c;
+      count += expected;
+    }
+    EXPECT_GT(count, 5);
+    EXPECT_LT(count, 30);
+  }
 }
 
 TEST(SurfaceDepth, IsThatOfTheFirstFaceOnTheWay) {

@@ -259,6 +259,35 @@ TEST(ImpurityRules, AcceptLayersThatReachTheirSet) {
   }
 }
 
+TEST(ImpurityRules, AcceptGroovesThatAreWiderThanTheirCurves) {
+  Strokes dot = Across();  // within a cell: a punch
+  dot.curves[0].points = {{0.4, 0.4, 0}, {0.4, 0.4, 0}};
+  Strokes beside = Across();
+  beside.curves[0].points = {{-0.1, -1, 0}, {-0.1, 2, 0}};
+  for (Strokes strokes : {dot, beside}) {
+    EXPECT_FALSE(Check(Layer(strokes)).ok());
+    strokes.radius = 0.05;  // reaches no node
+    EXPECT_FALSE(Check(Layer(strokes)).ok());
+    strokes.radius = 0.2;
+    const Faults faults = Check(Layer(strokes));
+    EXPECT_TRUE(faults.ok()) << faults.ToStatus();
+  }
+  SegmentPattern pattern = Cross();
+  pattern.origin = {-0.2, 0.4, 0};
+  pattern.curves = {{{{0, -1}, {0, 1}}, {0.1, 0.1}}};
+  EXPECT_FALSE(Check(Layer(pattern)).ok());
+  pattern.curves[0].half_widths = {0.3, 0.3};
+  EXPECT_TRUE(Check(Layer(pattern)).ok());
+  // One node, and no edge.
+  dot.curves[0].points = {{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}};
+  dot.direction = {1, 0.3, 0.2};
+  dot.radius = 0.05;
+  EXPECT_TRUE(Check(Layer(dot)).ok());
+  const Faults faults = Check(WeakeningOnly(Layer(dot)));
+  ASSERT_EQ(faults.errors().size(), 1u);
+  EXPECT_EQ(faults.errors()[0].field, "impurities.layers[1].strokes");
+}
+
 TEST(ImpurityRules, WarnOfValuesThatAreAllZero) {
   SurfacePaint black = Textured(), white = black, painted = Painted();
   black.texture->values = {0, 0};
