@@ -38,6 +38,12 @@ grpc::ChannelArguments ChannelArguments() {
   return arguments;
 }
 
+// Of calls that make, check or bake a body, which may have millions of tets.
+RetryPolicy ForBodies(RetryPolicy policy) {
+  policy.call_deadline = std::chrono::minutes(5);
+  return policy;
+}
+
 }  // namespace
 
 std::string NewRequestId() {
@@ -102,8 +108,8 @@ absl::StatusOr<v1::CreateSessionResponse> Client::CreateSession(v1::CreateSessio
   if (request.request_id().empty()) request.set_request_id(NewRequestId());
   v1::CreateSessionResponse response;
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(
-      policy_, request.validate_only() ? "checking the scene" : "creating the session", stop_,
-      [&](grpc::ClientContext& context) {
+      ForBodies(policy_), request.validate_only() ? "checking the scene" : "creating the session",
+      stop_, [&](grpc::ClientContext& context) {
         return sessions_->CreateSession(&context, request, &response);
       }));
   return response;
@@ -229,8 +235,8 @@ absl::StatusOr<v1::ListMaterialPresetsResponse> Client::ListMaterialPresets() {
 absl::StatusOr<v1::PreviewImpurityResponse> Client::PreviewImpurity(
     const v1::PreviewImpurityRequest& request) {
   v1::PreviewImpurityResponse response;
-  CLEAVE_RETURN_IF_ERROR(
-      CallWithRetry(policy_, "previewing impurities", stop_, [&](grpc::ClientContext& context) {
+  CLEAVE_RETURN_IF_ERROR(CallWithRetry(
+      ForBodies(policy_), "previewing impurities", stop_, [&](grpc::ClientContext& context) {
         return impurities_->PreviewImpurity(&context, request, &response);
       }));
   return response;

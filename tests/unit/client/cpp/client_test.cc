@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
 
 #include "tests/unit/client/cpp/fake_server.h"
@@ -87,6 +88,38 @@ TEST(Client, ProbeWhoseAnswerWasLostIsAskedForAgain) {
   ASSERT_TRUE(response.ok()) << response.status();
   EXPECT_EQ(response->material().name(), "glass");
   EXPECT_EQ(service.calls, 2);
+}
+
+// Knows how long calls wait for their answers.
+class PatientSessions : public v1::SessionService::Service {
+  grpc::Status CreateSession(grpc::ServerContext* context, const v1::CreateSessionRequest*,
+                             v1::CreateSessionResponse*) override {
+    until = context->deadline();
+    return grpc::Status::OK;
+  }
+
+ public:
+  std::chrono::system_clock::time_point until;
+};
+class PatientImpurities : public v1::ImpurityService::Service {
+  grpc::Status PreviewImpurity(grpc::ServerContext* context, const v1::PreviewImpurityRequest*,
+                               v1::PreviewImpurityResponse*) override {
+    until = context->deadline();
+    return grpc::Status::OK;
+  }
+
+ public:
+  std::chrono::system_clock::time_point until;
+};
+
+TEST(Client, CallsThatMakeOrBakeABodyWaitMinutes) {
+  const auto start = std::chrono::system_clock::now();
+  PatientSessions sessions;
+  EXPECT_TRUE(FakeServer(sessions).client().CreateSession({}).ok());
+  EXPECT_GE(sessions.until - start, std::chrono::minutes(4));
+  PatientImpurities impurities;
+  EXPECT_TRUE(FakeServer(impurities).client().PreviewImpurity({}).ok());
+  EXPECT_GE(impurities.until - start, std::chrono::minutes(4));
 }
 
 TEST(Client, NobodyAtTheAddressIsUnavailableAndNamesIt) {
