@@ -237,6 +237,12 @@ void CheckLayer(const std::string& field, const ImpurityLayer& layer,
 
 }  // namespace
 
+void CheckTracing(const std::string& prefix, const ImageDrawing& image, Faults& faults) {
+  Checker check(faults);
+  check.Between(prefix + "threshold", image.threshold, 0, 1);
+  check.Within(prefix + "tolerance", image.tolerance, 0, limits::kMaxTracingTolerance);
+}
+
 void CheckImpurities(const Impurities& impurities, const std::set<std::string>& names,
                      Faults& faults) {
   Checker check(faults);

@@ -19,6 +19,9 @@ void CheckImpurities(const Impurities& impurities, const std::set<std::string>& 
 // that CheckImpurities refuses are passed over.
 void CheckImpuritiesOfMesh(const Scene& scene, const TetMesh& mesh, Faults& faults);
 
+// How a picture is traced: threshold and tolerance. `prefix` stands before their names.
+void CheckTracing(const std::string& prefix, const ImageDrawing& image, Faults& faults);
+
 }  // namespace cleave
 
 #endif  // CLEAVE_CORE_SCENE_IMPURITY_RULES_H_

@@ -32,6 +32,7 @@ inline constexpr int64_t kMaxPaintTriangles = 2'000'000;  // sent inside the sce
 inline constexpr int64_t kMaxTextureSide = 65'536;        // texels
 inline constexpr int64_t kMaxTexels = int64_t{1} << 24;   // sent inside the scene
 inline constexpr double kMaxTextureCoordinate = 1e4;      // floats have a texel's digits below it
+inline constexpr double kMaxTracingTolerance = 100;       // pixels; coarser, a drawing is lost
 inline constexpr double kMaxDrawingUnit = 1e6;            // coordinates of a drawing
 // b of Basquin's law: beyond it life hardly depends on load, or jumps from 0 to infinity with it.
 inline constexpr double kMinFatigueExponent = -1;

@@ -76,14 +76,7 @@ class LayerReader {
                                                 message.curves(c).points()),
                                 Values(message.curves(c).half_widths())});
     }
-    if (message.has_image()) {
-      ImageDrawing& image = pattern.image.emplace();
-      image.file = message.image().file();
-      if (message.image().has_threshold()) image.threshold = message.image().threshold();
-      image.bright = message.image().bright();
-      image.keep_width = message.image().keep_width();
-      if (message.image().has_tolerance()) image.tolerance = message.image().tolerance();
-    }
+    if (message.has_image()) pattern.image = ImageFromMessage(message.image());
     pattern.origin = read_.Vector(At("pattern.origin"), message.origin(), pattern.origin);
     pattern.direction =
         read_.Vector(At("pattern.direction"), message.direction(), pattern.direction);
@@ -172,11 +165,7 @@ struct WriteImpuritySource {
   }
   void operator()(const SegmentPattern& pattern) const {
     v1::SegmentPattern& to = *message.mutable_pattern();
-    for (const DrawnCurve& curve : pattern.curves) {
-      v1::DrawnCurve& line = *to.add_curves();
-      for (const auto& point : curve.points) line.mutable_points()->Add(point.begin(), point.end());
-      line.mutable_half_widths()->Add(curve.half_widths.begin(), curve.half_widths.end());
-    }
+    WriteCurves(pattern.curves, *to.mutable_curves());
     if (pattern.image) {
       v1::ImageDrawing& image = *to.mutable_image();
       image.set_file(pattern.image->file);
@@ -247,6 +236,25 @@ void WriteLayer(const ImpurityLayer& layer, v1::ImpurityLayer& message) {
   message.set_falloff_shape(
       static_cast<v1::FalloffShape>(static_cast<int>(layer.falloff_shape) + 1));
   if (layer.seed) message.set_seed(*layer.seed);
+}
+
+ImageDrawing ImageFromMessage(const v1::ImageDrawing& message) {
+  ImageDrawing image;
+  image.file = message.file();
+  if (message.has_threshold()) image.threshold = message.threshold();
+  image.bright = message.bright();
+  image.keep_width = message.keep_width();
+  if (message.has_tolerance()) image.tolerance = message.tolerance();
+  return image;
+}
+
+void WriteCurves(const std::vector<DrawnCurve>& curves,
+                 google::protobuf::RepeatedPtrField<v1::DrawnCurve>& message) {
+  for (const DrawnCurve& curve : curves) {
+    v1::DrawnCurve& line = *message.Add();
+    for (const auto& point : curve.points) line.mutable_points()->Add(point.begin(), point.end());
+    line.mutable_half_widths()->Add(curve.half_widths.begin(), curve.half_widths.end());
+  }
 }
 
 }  // namespace cleave

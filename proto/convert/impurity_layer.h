@@ -2,6 +2,7 @@
 #define CLEAVE_PROTO_CONVERT_IMPURITY_LAYER_H_
 
 #include <string>
+#include <vector>
 
 #include "cleave/v1/scene.pb.h"
 #include "core/base/faults.h"
@@ -15,6 +16,11 @@ ImpurityLayer LayerFromMessage(const v1::ImpurityLayer& message, const std::stri
 
 // The message that describes a layer; LayerFromMessage gives the same layer back.
 void WriteLayer(const ImpurityLayer& layer, v1::ImpurityLayer& message);
+
+// The parts of a pattern that a traced picture is made with and gives.
+ImageDrawing ImageFromMessage(const v1::ImageDrawing& message);
+void WriteCurves(const std::vector<DrawnCurve>& curves,
+                 google::protobuf::RepeatedPtrField<v1::DrawnCurve>& message);
 
 }  // namespace cleave
 

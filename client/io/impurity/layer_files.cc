@@ -13,6 +13,8 @@
 #include "client/io/mesh/vtu.h"
 #include "client/io/surface/surface_file.h"
 #include "core/base/status.h"
+#include "core/scene/impurity_rules.h"
+#include "proto/convert/impurity_layer.h"
 
 namespace cleave {
 namespace {
@@ -30,28 +32,14 @@ absl::StatusOr<PlyPoints> ReadPly(const std::string& path, const std::string& pr
 }
 
 absl::Status ReadImage(const std::string& path, v1::SegmentPattern& pattern) {
-  const v1::ImageDrawing& from = pattern.image();
-  ImageDrawing image;
-  if (from.has_threshold()) image.threshold = from.threshold();
-  image.bright = from.bright();
-  image.keep_width = from.keep_width();
-  if (from.has_tolerance()) image.tolerance = from.tolerance();
-  if (!(image.threshold > 0 && image.threshold < 1)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("threshold: ", image.threshold, " is outside (0, 1)"));
-  }
-  if (!(image.tolerance >= 0 && image.tolerance <= 100)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("tolerance: ", image.tolerance, " is outside [0, 100]"));
-  }
+  const ImageDrawing image = ImageFromMessage(pattern.image());
+  Faults faults;
+  CheckTracing("", image, faults);
+  if (!faults.ok()) return faults.ToStatus();
   CLEAVE_ASSIGN_OR_RETURN(const GreyRaster raster, ReadPictureFile(path));
   const auto curves = TraceDrawing(raster, image);
   if (!curves.ok()) return At(path, curves.status());
-  for (const DrawnCurve& curve : *curves) {
-    v1::DrawnCurve& to = *pattern.add_curves();
-    for (const auto& point : curve.points) to.mutable_points()->Add(point.begin(), point.end());
-    to.mutable_half_widths()->Add(curve.half_widths.begin(), curve.half_widths.end());
-  }
+  WriteCurves(*curves, *pattern.mutable_curves());
   pattern.clear_image();
   return absl::OkStatus();
 }

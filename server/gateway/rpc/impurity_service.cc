@@ -4,7 +4,10 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/faults.h"
 #include "core/base/status.h"
+#include "core/impurity/drawing.h"
 #include "core/model/impurity_preview.h"
+#include "core/scene/impurity_rules.h"
+#include "proto/convert/impurity_layer.h"
 #include "proto/convert/impurity_preview.h"
 #include "server/gateway/errors.h"
 #include "server/gateway/rpc/calls.h"
@@ -35,6 +38,31 @@ absl::Status Answer(const v1::PreviewImpurityRequest& request, AssetStore& asset
   return absl::OkStatus();
 }
 
+absl::Status Trace(const v1::TraceDrawingRequest& request, v1::TraceDrawingResponse& response) {
+  Faults faults;
+  const ImageDrawing image = ImageFromMessage(request.image());
+  CheckTracing("image.", image, faults);
+  if (!image.file.empty())
+    faults.Error("image.file", "is a path of the client, which sends the pixels of it");
+  const int64_t width = request.width(), height = request.height();
+  const auto pixels = static_cast<int64_t>(request.pixels().size());
+  if (width < 1) faults.Error("width", absl::StrCat(width, " is below 1"));
+  if (height < 1) faults.Error("height", absl::StrCat(height, " is below 1"));
+  if (width >= 1 && height >= 1 && pixels != width * height) {
+    faults.Error("pixels", absl::StrCat("has ", pixels, " bytes; ", width, " x ", height,
+                                        " pixels have ", width * height));
+  }
+  if (!faults.ok()) return MakeBadRequest("PARAM_OUT_OF_RANGE", "", faults);
+  GreyRaster raster{request.width(), request.height(), {}};
+  raster.values.reserve(request.pixels().size());
+  for (const char pixel : request.pixels())
+    raster.values.push_back(static_cast<float>(static_cast<uint8_t>(pixel)) / 255);
+  const auto curves = TraceDrawing(raster, image);
+  if (!curves.ok()) return MakeBadField("pixels", curves.status().message());
+  WriteCurves(*curves, *response.mutable_curves());
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 grpc::ServerUnaryReactor* ImpurityService::PreviewImpurity(
@@ -44,6 +72,15 @@ grpc::ServerUnaryReactor* ImpurityService::PreviewImpurity(
     // Nobody waits for it any more, and others wait behind it.
     if (context->IsCancelled()) return absl::CancelledError("the client is gone");
     return Answer(*request, assets_, max_answer_bytes_, *response);
+  });
+}
+
+grpc::ServerUnaryReactor* ImpurityService::TraceDrawing(grpc::CallbackServerContext* context,
+                                                        const v1::TraceDrawingRequest* request,
+                                                        v1::TraceDrawingResponse* response) {
+  return AnswerFrom(checks_, context, [context, request, response] {
+    if (context->IsCancelled()) return absl::CancelledError("the client is gone");
+    return Trace(*request, *response);
   });
 }
 

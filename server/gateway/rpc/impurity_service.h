@@ -10,13 +10,16 @@ namespace cleave {
 // cleave.v1.ImpurityService. What it is given must outlive it.
 class ImpurityService final : public v1::ImpurityService::CallbackService {
  public:
-  // Previews run on `checks`; answers are at most `max_answer_bytes` large.
+  // Calls run on `checks`; answers are at most `max_answer_bytes` large.
   ImpurityService(Executor& checks, AssetStore& assets, size_t max_answer_bytes)
       : checks_(checks), assets_(assets), max_answer_bytes_(max_answer_bytes) {}
 
   grpc::ServerUnaryReactor* PreviewImpurity(grpc::CallbackServerContext* context,
                                             const v1::PreviewImpurityRequest* request,
                                             v1::PreviewImpurityResponse* response) override;
+  grpc::ServerUnaryReactor* TraceDrawing(grpc::CallbackServerContext* context,
+                                         const v1::TraceDrawingRequest* request,
+                                         v1::TraceDrawingResponse* response) override;
 
  private:
   Executor& checks_;
