@@ -24,9 +24,12 @@ import grpc  # noqa: E402
 import numpy as np  # noqa: E402
 from google.protobuf import json_format  # noqa: E402
 
+from cleave.answers import Mesh  # noqa: E402
 from cleave.client import CleaveError, Client, Region  # noqa: E402
 from cleave.embedded import EmbeddedVertices  # noqa: E402
 from cleave.events import read_events  # noqa: E402
+from cleave.impurity_picture import (  # noqa: E402
+    draw_impurities, shown_impurities, write_png)
 from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
 
 
@@ -333,6 +336,84 @@ class PythonClientTest(unittest.TestCase):
         with self.assertRaises(CleaveError) as caught:
             self.client.preview_impurity(first_steps.bar())
         self.assertEqual(caught.exception.faults[0][0], "scene.impurities")
+
+    def test_impurities_are_drawn_in_magenta_on_yellow(self):
+        scene = first_steps.bar()
+        session = self.client.create_session("drawn", scene)
+        mesh = session.mesh()
+        session.delete()
+        scene.impurities.layers.add(
+            potency=3, bands={"axis": [1, 0, 0], "position": 0.05, "width": 0.03})
+        preview = self.client.preview_impurity(scene, with_edges=True)
+        picture = draw_impurities(mesh, preview, width=200, azimuth=-90, elevation=0)
+        self.assertEqual(picture.shape[1:], (200, 3))
+        middle = picture[len(picture) // 2].astype(int)
+        red, green, blue = middle.T
+        np.testing.assert_array_equal(middle[[0, 1, -2, -1]], 245)  # beside the body
+        yellow, magenta = green > 2 * blue, blue > 2 * green
+        at = 0.05 + (np.arange(200) - 99.5) / 180 * first_steps.LENGTH
+        self.assertTrue(yellow[(at > 0.002) & (at < 0.02) | (at > 0.08) & (at < 0.098)].all())
+        self.assertTrue(magenta[abs(at - 0.05) < 0.008].all())
+        self.assertGreater(red[100], 100)
+        # What only weakens is shown as well, and a cut as most.
+        scene.impurities.layers[0].ClearField("potency")
+        scene.impurities.layers[0].weakening = 0
+        cut = self.client.preview_impurity(scene, with_edges=True)
+        np.testing.assert_array_equal(shown_impurities(cut) == 1, preview.potencies == 3)
+
+        path = f"{self._folder.name}/drawn.png"
+        write_png(path, picture)
+        with open(path, "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        with self.assertRaisesRegex(ValueError, "the mesh has 4"):
+            draw_impurities(Mesh(np.eye(4, 3), np.array([[0, 1, 2, 3]])), preview)
+
+    def test_pictures_become_patterns(self):
+        grey = np.full((60, 80), 255, np.uint8)
+        grey[28:32, 10:70] = 0
+        curve, = self.client.trace_drawing(grey)
+        points = np.array(curve.points).reshape(-1, 2)
+        # One line across the middle, in units of the picture's width.
+        np.testing.assert_allclose(points[:, 1], 0, atol=0.01)
+        np.testing.assert_allclose(sorted(points[[0, -1], 0]), [-0.36, 0.36], atol=0.03)
+        self.assertEqual(len(curve.half_widths), 0)
+        wide, = self.client.trace_drawing(grey, keep_width=True)
+        np.testing.assert_allclose(np.median(wide.half_widths), 2 / 80, atol=0.01)
+        # The same of floats, of colours, through what is transparent, and of its negative.
+        rgba = np.zeros((60, 80, 4))
+        rgba[..., 3] = grey == 0
+        for picture, bright in [(grey / 255, False), (np.stack(3 * [grey], -1), False),
+                                (rgba, False), (255 - grey, True)]:
+            self.assertEqual(self.client.trace_drawing(picture, bright=bright), [curve])
+
+        scene = first_steps.bar()
+        scene.impurities.layers.add(weakening=0.5, pattern=scene_pb2.SegmentPattern(
+            curves=[curve], origin=[0.05, 0.01, 0], scale=0.05))
+        self.assertGreater(self.client.preview_impurity(scene).affected_edges, 20)
+
+        for picture, options, field in [(np.full((4, 4), 255, np.uint8), {}, "pixels"),
+                                        (grey, {"threshold": 1}, "image.threshold"),
+                                        (grey, {"tolerance": float("nan")}, "image.tolerance"),
+                                        (np.zeros((0, 4), np.uint8), {}, "height")]:
+            with self.assertRaises(CleaveError) as caught:
+                self.client.trace_drawing(picture, **options)
+            self.assertEqual([name for name, _ in caught.exception.faults], [field])
+        for picture in [np.zeros(5), np.zeros((5, 5, 2)), np.full((5, 5), 1.5), np.zeros((3000, 3000))]:
+            with self.assertRaisesRegex(ValueError, "pixels"):
+                self.client.trace_drawing(picture)
+
+    def test_what_makes_a_scene_too_large_is_named(self):
+        scene = first_steps.bar()
+        scene.impurities.layers.add(potency=1, noise=scene_pb2.NoiseField())
+        scene.impurities.layers.add(potency=1, node_values=scene_pb2.NodeValues(
+            shares=np.zeros(600_000)))
+        for call in [self.client.preview_impurity,
+                     lambda large: self.client.create_session("large", large)]:
+            with self.assertRaises(CleaveError) as caught:
+                call(scene)
+            self.assertEqual(caught.exception.code, grpc.StatusCode.RESOURCE_EXHAUSTED)
+            self.assertEqual(caught.exception.faults[0][0],
+                             "scene.impurities.layers[1].node_values.shares")
 
     def test_session_keeps_the_numbers_of_a_preset(self):
         scene = first_steps.bar()

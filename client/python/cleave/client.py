@@ -18,12 +18,14 @@ import grpc
 import numpy as np
 from google.protobuf import json_format, text_format
 
+from cleave import pictures
 from cleave.answers import Curve, ImpurityPreview, Mesh, Probe, RenderMesh
 from cleave.assets import download, upload
 from cleave.errors import ATTEMPTS, CleaveError, SimulationFailed, delay  # noqa: F401
 from cleave.region import Region  # noqa: F401
 from cleave.rungs import rung_number
 from cleave.session import Session
+from cleave.sizes import check_size
 from cleave.stubs import (
     asset_pb2,
     asset_pb2_grpc,
@@ -40,6 +42,7 @@ from cleave.stubs import (
 )
 
 _CALL_SECONDS = 30
+_REQUEST_BYTES = 1024  # of a request besides the scene or picture in it
 
 
 def load_scene(path):
@@ -133,6 +136,7 @@ class Client:
         `rung` is what it keeps of its frames, and so the finest that viewers can have: "preview",
         "standard", "fine" or "lossless". Without it: as scene.output.tolerance says, or standard.
         """
+        check_size(scene, self._most_bytes())
         response = self._call(
             self._sessions.CreateSession,
             session_pb2.CreateSessionRequest(
@@ -230,8 +234,9 @@ class Client:
         """Bakes the impurities of a Scene message on its mesh; nothing is simulated.
 
         Returns an ImpurityPreview. Layers must hold what they are made of: the files that a layer may
-        name are read by the command line only.
+        name are read by the command line only; `trace_drawing` makes curves of a picture.
         """
+        check_size(scene, self._most_bytes())
         answer = self._call(
             self._impurities.PreviewImpurity,
             impurity_pb2.PreviewImpurityRequest(scene=scene, with_edges=with_edges),
@@ -248,6 +253,32 @@ class Client:
             np.array(answer.strengths),
             list(answer.warnings),
         )
+
+    def trace_drawing(self, pixels, threshold=0.5, bright=False, keep_width=False, tolerance=0.5):
+        """The curves of a SegmentPattern along the lines of a picture, a list of DrawnCurve messages.
+
+        pixels: rows from the top, h x w (grey), h x w x 3 (RGB) or h x w x 4 (RGBA, over white), as bytes or
+        as floats from 0 to 1: what matplotlib, Pillow and imageio read. What is darker than `threshold` is
+        drawn, or brighter with `bright`. With keep_width curves are as wide as lines; they stray from the
+        middle of these by at most `tolerance` pixels. Units are the picture's width, from its middle.
+        """
+        grey = pictures.grey(pixels)
+        most = self._most_bytes()
+        if grey.size > most:
+            raise ValueError(f"pixels: {grey.size} are more than the {most} that a call can send")
+        answer = self._call(
+            self._impurities.TraceDrawing,
+            impurity_pb2.TraceDrawingRequest(
+                width=grey.shape[1],
+                height=grey.shape[0],
+                pixels=grey.tobytes(),
+                image=scene_pb2.ImageDrawing(
+                    threshold=threshold, bright=bright, keep_width=keep_width, tolerance=tolerance
+                ),
+            ),
+            seconds=300,
+        )
+        return list(answer.curves)
 
     def download_mesh(self, asset, unit_scale=1.0):
         """The Mesh of an asset name; positions times unit_scale."""
@@ -266,6 +297,9 @@ class Client:
             np.array(message.triangles, np.int32).reshape(-1, 3),
             uvs,
         )
+
+    def _most_bytes(self):
+        return self.server.limits.max_message_bytes - _REQUEST_BYTES
 
     def _call(self, method, request, seconds=_CALL_SECONDS, wait=False):
         """A call that is safe to repeat, repeated while the server is away."""
