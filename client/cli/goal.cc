@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "client/cli/number_check.h"
 #include "core/scene/limits.h"
 
@@ -17,6 +18,14 @@ void AddGoalOptions(CLI::App& verb, GoalOptions& options) {
       ->type_name("SECONDS");
   verb.add_flag("--until-fracture", options.until_fracture,
                 "Stop after the first frame that breaks an edge");
+}
+
+std::string GoalOptions::Words() const {
+  std::string words;
+  if (frames > 0) absl::StrAppend(&words, " --frames ", frames);
+  if (wall_seconds > 0) absl::StrAppend(&words, " --wall-budget ", wall_seconds);
+  if (until_fracture) absl::StrAppend(&words, " --until-fracture");
+  return words;
 }
 
 v1::RunGoal GoalMessage(const GoalOptions& options) {

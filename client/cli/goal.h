@@ -3,6 +3,7 @@
 
 #include <CLI/App.hpp>
 #include <cstdint>
+#include <string>
 
 #include "cleave/v1/session.pb.h"
 
@@ -13,6 +14,9 @@ struct GoalOptions {
   int64_t frames = 0;           // --frames; 0: the scene's
   double wall_seconds = 0;      // --wall-budget; 0: none
   bool until_fracture = false;  // --until-fracture
+
+  // The options as they were typed, for a command to go on with; begins with a blank.
+  std::string Words() const;
 };
 
 void AddGoalOptions(CLI::App& verb, GoalOptions& options);

@@ -18,6 +18,11 @@
 
 namespace cleave {
 
+std::string ProductOptions::Words() const {
+  return absl::StrCat(vtu ? " --vtu" : "", ply ? " --ply" : "", preview ? " --preview" : "",
+                      plot ? " --plot" : "");
+}
+
 void AddProductOptions(CLI::App& verb, ProductOptions& options) {
   verb.add_flag("--vtu", options.vtu, "Also write DIR/vtu, a series for ParaView");
   verb.add_flag("--ply", options.ply, "Also write DIR/ply, a surface a frame");

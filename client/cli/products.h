@@ -19,6 +19,8 @@ struct ProductOptions {
   bool preview = false;  // DIR/contact_sheet.png and DIR/preview.webp
   bool plot = false;     // DIR/plot.svg
   bool any() const { return vtu || ply || preview || plot; }
+  // The options as they were typed, for a command to go on with; begins with a blank.
+  std::string Words() const;
 };
 
 void AddProductOptions(CLI::App& verb, ProductOptions& options);

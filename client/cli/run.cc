@@ -43,6 +43,13 @@ struct Options {
   bool quiet = false;
 };
 
+// Whether a run that failed so is tried again: what the scene does it does again, but a disk that
+// was full may have room now.
+bool MayPass(const v1::Error& error) {
+  return error.reason() == "DISK_FULL" || error.reason() == "INTERNAL" ||
+         error.reason() == "WORKER_LOST";
+}
+
 // The run that the folder knows, or a new one.
 class Run {
  public:
@@ -115,8 +122,8 @@ class Run {
   absl::Status StartRunning() {
     head_ = session_.head_frame();
     scene_ = session_.scene();  // other calls leave it out
-    if (session_.state() == v1::SESSION_STATE_FAILED ||
-        session_.state() == v1::SESSION_STATE_RUNNING)
+    const bool failed = session_.state() == v1::SESSION_STATE_FAILED;
+    if (session_.state() == v1::SESSION_STATE_RUNNING || (failed && !MayPass(session_.error())))
       return absl::OkStatus();  // the stream tells
     const int64_t goal =
         options_.goal.frames > 0 ? options_.goal.frames : input_.scene.timing.frame_count;
@@ -213,7 +220,8 @@ class Run {
     std::string command = absl::StrCat("cleave run ", options_.scene, " --out ", options_.out);
     if (!options_.server.address.empty())
       absl::StrAppend(&command, " --server ", options_.server.address);
-    return command + options_.accuracy.Words();
+    return absl::StrCat(command, options_.accuracy.Words(), options_.goal.Words(),
+                        options_.products.Words());
   }
 
   Program& program_;

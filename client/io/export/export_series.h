@@ -34,12 +34,14 @@ struct ExportResult {
   int64_t open_faces = 0;  // of a render mesh: EmbeddedMesh::open_faces
 };
 
-// Writes a file a frame and a ParaView collection of them.
+// Writes a file a frame and a ParaView collection of them. A frame's file does not depend on which
+// others `frames` leaves out.
 // Point data of both contents: piece, rest (m), displacement (m, from rest), velocity (m/s, mean
 // since the frame before; 0 in the first), and potency where it is given. Surface: strain a point
 // (largest principal stretch less 1, mean of the tets round it), damage a point (share of broken
-// edges, mean of the tets round it), id a point and a cell (surface_ids.h); region, tet, piece,
-// inside (1: opened by a crack) and source (ShownSurface::sources) a cell. Volume: region, tet,
+// edges, mean of the tets round it), id a point and a cell (surface_ids.h), and uv a point (VTK's
+// TCoords; surface_grid.h) of a render mesh that has them; region, tet, piece, inside (1: opened by
+// a crack) and source (ShownSurface::sources) a cell. Volume: region, tet,
 // piece, strain, damage, broken_edges (of the tet, 0 to 6) and separated (0 or 1) a cell. Pieces
 // are those of SurfaceSequence, tets the mesh file's.
 //

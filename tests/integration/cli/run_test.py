@@ -57,6 +57,24 @@ class EmbeddedRuns(CliTest):
         code, output, errors = cleave("preview", out, "--still", "last", "--width", "64")
         self.assertEqual((code, output), (0, f"{out}/still_000004.png\n"), errors)
 
+    def test_run_that_failed_by_the_machine_goes_on_when_that_is_mended(self):
+        scene, out = self.scene(BLOCK % 4), self.folder / "out"
+        self.assertEqual(cleave("run", scene, "--out", out, "-q", "--frames", "2")[0], 0)
+        (session,) = (out / "server" / "sessions").iterdir()
+        checkpoints, aside = session / "checkpoints", session / "aside"
+        checkpoints.rename(aside)
+        checkpoints.touch()
+        code, _, errors = cleave("run", scene, "--out", out, "-q")
+        self.assertEqual(code, 5, errors)
+        self.assertIn("Not a directory", errors)
+        checkpoints.unlink()
+        aside.rename(checkpoints)
+        code, _, errors = cleave("run", scene, "--out", out, "-q")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(cleave("run", scene, "--out", self.folder / "whole", "-q")[0], 0)
+        self.assertEqual((out / "frames.clv").read_bytes(),
+                         (self.folder / "whole" / "frames.clv").read_bytes())
+
     def test_render_mesh_is_written_in_place_of_the_surface(self):
         out = self.folder / "out"
         self.assertEqual(cleave("run", self.scene(BLOCK % 2), "--out", out, "-q")[0], 0)

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "client/cli/goal.h"
+#include "client/cli/products.h"
+
 namespace cleave {
 namespace {
 
@@ -17,6 +20,14 @@ TEST(NewSessionId, IsValidForAnyFileNameAndDiffersEachTime) {
     EXPECT_NE(id, NewSessionId(path));
   }
   EXPECT_THAT(NewSessionId("scenes/Notched_Rod.scene.json"), testing::StartsWith("notched-rod-"));
+}
+
+TEST(GoalOptions, ACommandToGoOnHasTheOptionsThatWereTyped) {
+  EXPECT_EQ(GoalOptions().Words(), "");
+  EXPECT_EQ((GoalOptions{12, 0.5, true}.Words()),
+            " --frames 12 --wall-budget 0.5 --until-fracture");
+  EXPECT_EQ(ProductOptions().Words(), "");
+  EXPECT_EQ((ProductOptions{.ply = true, .plot = true}.Words()), " --ply --plot");
 }
 
 }  // namespace
