@@ -14,6 +14,11 @@ namespace {
 constexpr double kLength = 0.6;  // m
 constexpr double kWidth = 0.3;   // m
 constexpr double kGap = 0.2;     // m between the slabs
+constexpr double kStretch = 0.09;
+// Slow against the wave that the pull sends, 20 ms from end to end; and steps in which a wave crosses
+// two cells of full size, for what an implicit step is told of falls off over that length.
+constexpr double kSeconds = 0.12;
+constexpr int64_t kFrames = 48;
 
 bool InSecond(const Vec3& x) { return x[1] > kWidth + kGap / 2; }
 
@@ -70,8 +75,8 @@ absl::StatusOr<Demonstration> MakeLocality(const Setting& setting) {
   AddNodeSet(scene, "right", right);
   AddMotion(scene, "left", {true, true, true});
   made.pull_motion =
-      AddMotion(scene, "right", {true, true, true}, PullBy({0.07 * kLength, 0, 0}, 0.7));
-  SetPace(scene, 0.7, 14);
+      AddMotion(scene, "right", {true, true, true}, PullBy({kStretch * kLength, 0, 0}, kSeconds));
+  SetPace(scene, kSeconds, kFrames);
   // A change of one node's potency is far smaller than what mid settings leave unsolved.
   scene.quality.residual_tolerance = 1e-10;
   scene.quality.step_tolerance = 1e-10;

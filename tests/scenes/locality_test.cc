@@ -13,5 +13,9 @@ TEST(LocalityDemonstration, AnImpurityIsFeltOnlyOnceAnEdgeOfItsNodeBreaks) {
   ExpectCriteria("locality");
 }
 
+TEST(FullLocality, AnImpurityIsFeltOnlyOnceAnEdgeOfItsNodeBreaks) {
+  ExpectCriteriaInFull("locality");
+}
+
 }  // namespace
 }  // namespace cleave
