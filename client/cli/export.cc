@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -8,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "client/cli/console.h"
@@ -96,6 +99,9 @@ absl::Status CheckFormat(const Options& options) {
   if (options.name.empty() || options.name.find('/') != std::string::npos)
     faults.Error("--name",
                  absl::StrCat("\"", options.name, "\" is no name of a file: --to says where"));
+  if (std::any_of(options.name.begin(), options.name.end(), absl::ascii_iscntrl))
+    faults.Error("--name",
+                 absl::StrCat("\"", absl::CEscape(options.name), "\" holds a control character"));
   CheckRenderMeshOptions(options.render_mesh, faults);
   return faults.ToStatus();
 }

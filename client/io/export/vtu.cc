@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "core/base/bytes.h"
 #include "core/base/faults.h"
 #include "core/base/parallel.h"
@@ -17,9 +19,11 @@ namespace {
 // Large enough that the block table is nothing, small enough that a frame keeps all cores busy.
 constexpr size_t kBlockBytes = 256 * 1024;
 
+bool IsControl(char c) { return static_cast<unsigned char>(c) < 32; }
+
 bool NeedsEscape(absl::string_view text) {
   return std::any_of(text.begin(), text.end(), [](char c) {
-    return c == '<' || c == '>' || c == '&' || c == '"' || static_cast<unsigned char>(c) < 32;
+    return c == '<' || c == '>' || c == '&' || c == '"' || IsControl(c);
   });
 }
 
@@ -157,12 +161,14 @@ absl::StatusOr<std::string> EncodePvd(const std::vector<PvdEntry>& entries) {
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "
       "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const PvdEntry& entry : entries) {
-    if (NeedsEscape(entry.file)) {
+    if (std::any_of(entry.file.begin(), entry.file.end(), IsControl)) {
       return absl::InvalidArgumentError(
-          absl::StrCat("file name ", entry.file, " holds a character XML reserves"));
+          absl::StrCat("file name \"", absl::CEscape(entry.file), "\" holds a control character"));
     }
-    absl::StrAppendFormat(&out, "<DataSet timestep=\"%.17g\" group=\"\" part=\"0\" file=\"%s\"/>\n",
-                          entry.time, entry.file);
+    absl::StrAppendFormat(
+        &out, "<DataSet timestep=\"%.17g\" group=\"\" part=\"0\" file=\"%s\"/>\n", entry.time,
+        absl::StrReplaceAll(entry.file,
+                            {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}}));
   }
   absl::StrAppend(&out, "</Collection>\n</VTKFile>\n");
   return out;

@@ -68,7 +68,7 @@ struct PvdEntry {
 };
 
 // The bytes of a ParaView collection that plays the files over time. Errors: InvalidArgument for a
-// name that needs escaping in XML.
+// name with a control character.
 absl::StatusOr<std::string> EncodePvd(const std::vector<PvdEntry>& entries);
 
 }  // namespace cleave

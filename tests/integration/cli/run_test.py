@@ -169,6 +169,9 @@ class EmbeddedRuns(CliTest):
         code, _, errors = cleave("export", out, "--reports", out / "reports.jsonl")
         self.assertEqual(code, 3)
         self.assertIn("--reports: goes with --format plot, not vtu", errors)
+        code, _, errors = cleave("export", out, "--name", "a\nb")
+        self.assertEqual(code, 3)
+        self.assertIn('--name: "a\\nb" holds a control character', errors)
 
     @staticmethod
     def umask():

@@ -90,7 +90,11 @@ TEST(Pvd, ListsFilesByTime) {
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(std::stod(entries[1]->attributes.at("timestep")), 0.1);
   EXPECT_EQ(entries[1]->attributes.at("file"), "a_1.vtu");
-  EXPECT_FALSE(EncodePvd({{0, "a&b.vtu"}}).ok());
+  const auto escaped = EncodePvd({{0, "<a> & \"b\".vtu"}});
+  ASSERT_TRUE(escaped.ok()) << escaped.status();
+  EXPECT_THAT(*escaped, HasSubstr("file=\"&lt;a&gt; &amp; &quot;b&quot;.vtu\""));
+  EXPECT_THAT(std::string(EncodePvd({{0, "a\nb.vtu"}}).status().message()),
+              HasSubstr("\"a\\nb.vtu\" holds a control character"));
 }
 
 }  // namespace
