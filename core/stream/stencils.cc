@@ -14,84 +14,6 @@
 namespace cleave {
 namespace {
 
-constexpr size_t kEnoughNear = 7;          // places over one edge that make a search stop
-constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther out
-
-// Places on their way to a Nearest: what is to be read of them is fetched meanwhile.
-class Candidates {
- public:
-  Candidates(const std::vector<Vec3>& rest, Nearest& nearest) : rest_(rest), nearest_(nearest) {}
-
-  // Offers `place` sooner or later, if `wanted`.
-  void Add(int32_t place, bool wanted) {
-    __builtin_prefetch(rest_.data() + place);
-    places_[count_] = place;
-    count_ += static_cast<size_t>(wanted);
-    if (count_ == places_.size()) Flush([](int32_t) { return true; });
-  }
-  // Offers those that were added and of which `is_wanted(place)`.
-  template <typename IsWanted>
-  void Flush(const IsWanted& is_wanted) {
-    for (size_t at = 0; at < count_; ++at) {
-      const int32_t place = places_[at];
-      nearest_.Offer(place, rest_[static_cast<size_t>(place)], is_wanted(place));
-    }
-    count_ = 0;
-  }
-  bool HasRoom() const { return count_ + 1 < places_.size(); }
-
- private:
-  const std::vector<Vec3>& rest_;
-  Nearest& nearest_;
-  size_t count_ = 0;
-  std::array<int32_t, 256> places_;
-};
-
-// Offers the coarser visible places of the same piece in the 27 cubes around a place.
-template <typename IsVisible>
-void SearchCubes(const CubeIndex& index, std::span<const NodeOrder::Coarse> coarser, uint64_t code,
-                 int bits, int32_t piece, const Pieces& pieces, const IsVisible& is_visible,
-                 Candidates& candidates) {
-  // Neighbouring cubes by arithmetic on each axis' bits in place.
-  constexpr uint64_t kX = 0x1249249249249249u;
-  const uint64_t inside = (uint64_t{1} << (3 * (21 - bits))) - 1;
-  const uint64_t cube = code >> (3 * bits);
-  std::array<std::array<uint64_t, 3>, 3> along;  // by axis
-  std::array<size_t, 3> counts{};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    const uint64_t mask = (kX << axis) & inside;
-    const uint64_t own = cube & mask;
-    const uint64_t one = uint64_t{1} << axis;
-    if (own != 0) along[axis][counts[axis]++] = (own - one) & mask;
-    along[axis][counts[axis]++] = own;
-    if (own != mask) along[axis][counts[axis]++] = ((own | ~mask) + one) & mask;
-  }
-  std::array<uint64_t, 27> cubes;
-  size_t count = 0;
-  for (size_t x = 0; x < counts[0]; ++x) {
-    for (size_t y = 0; y < counts[1]; ++y) {
-      for (size_t z = 0; z < counts[2]; ++z) {
-        cubes[count] = along[0][x] | along[1][y] | along[2][z];
-        index.Prefetch(cubes[count++]);
-      }
-    }
-  }
-  const auto same_piece = [&](int32_t place) {
-    return pieces[place] == piece && is_visible(place);
-  };
-  for (size_t at = 0; at < count; ++at) {
-    for (const NodeOrder::Coarse& found : index.In(cubes[at], coarser)) {
-      __builtin_prefetch(pieces.labels().data() + found.place);
-      candidates.Add(found.place, true);
-      if (!candidates.HasRoom()) candidates.Flush(same_piece);
-    }
-  }
-  candidates.Flush(same_piece);
-}
-
-// In the state view.
-constexpr auto kAllVisible = [](int32_t) { return true; };
-
 bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
   Int32x8 of_stencil;
   std::memcpy(&of_stencil, stencil.places.data(), sizeof(of_stencil));
@@ -109,14 +31,22 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
   stencils_.resize(rest_.size());
   reaches_.resize(rest_.size());
   lost_edges_.assign(rest_.size(), 0);
-  is_touched_.assign(rest_.size(), 0);
+  changes_.assign(rest_.size(), kNone);
   pieces_.Find(order, graph_);
   cubes_.resize(static_cast<size_t>(order.groups()));
   for (size_t group = 1; group < cubes_.size(); ++group) {
     for (size_t size = 0; size < kCubeSizes; ++size) {
       const int bits = order.cube_bits[group] + static_cast<int>(size);
-      if (bits <= 21) cubes_[group][size] = CubeIndex(order.coarser[group], bits);
+      if (bits > kMortonBits) continue;
+      CubeIndex& cubes = cubes_[group][size];
+      cubes = CubeIndex(order.coarser[group], bits);
+      if (visible_) cubes.Clear();
     }
+  }
+  if (visible_) {
+    near_fresh_.resize(cubes_.size());
+    marks_.assign(rest_.size(), 0);
+    ShowInCubes(order, visible_->places());
   }
   TouchAll();
   Rebuild(order, touched_);
@@ -130,119 +60,10 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, cons
     : Stencils(order, std::move(rest_by_place), mesh.edges,
                VisiblePlaces(order, mesh.edges, mesh.tets)) {}
 
-// The places that a place is to be predicted from.
-template <typename IsVisible>
-void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
-                      const IsVisible& is_visible) {
-  const auto index = static_cast<size_t>(place);
-  const size_t group = order.GroupOf(place);
-  const int32_t coarse_end = order.group_begins[group];
-  Candidates candidates(rest_, nearest);
-  const auto any = [](int32_t) { return true; };
-  // Breaks only take places away, so that a search never ends nearer than it did before.
-  Reach& reach = reaches_[index];
-  if (reach != Reach::kSpace) {
-    for (const int32_t other : graph_.Neighbours(place)) {
-      if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
-      candidates.Add(other, other >= 0 && is_visible(other));
-    }
-    candidates.Flush(any);
-    nearest.Settle();
-    if (nearest.count() < kEnoughNear) reach = Reach::kTwoEdges;
-  }
-  if (reach == Reach::kTwoEdges) {
-    for (const int32_t between : graph_.Neighbours(place)) {
-      if (between >= 0) graph_.Prefetch(between);
-    }
-    // Places that came by lately, since most come by several times.
-    std::array<int32_t, 128> recent;
-    recent.fill(-1);
-    for (size_t k = 0; k < nearest.count(); ++k) {
-      recent[static_cast<size_t>(nearest[k]) % recent.size()] = nearest[k];
-    }
-    for (const int32_t between : graph_.Neighbours(place)) {
-      if (between < 0) continue;
-      for (const int32_t other : graph_.Neighbours(between)) {
-        if (other >= coarse_end) break;
-        int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
-        candidates.Add(other, other >= 0 && same != other && is_visible(other));
-        same = other;
-      }
-    }
-    candidates.Flush(any);
-    nearest.Settle();
-    if (nearest.count() < kEnough) reach = Reach::kSpace;
-  }
-  if (reach == Reach::kSpace) {
-    nearest.Clear();
-    for (size_t size = 0; size < kCubeSizes && nearest.count() < kEnough && group > 0; ++size) {
-      const int bits = order.cube_bits[group] + static_cast<int>(size);
-      if (bits > 21) break;
-      SearchCubes(cubes_[group][size], order.coarser[group], order.codes[index], bits,
-                  pieces_[place], pieces_, is_visible, candidates);
-      nearest.Settle();
-    }
-  }
-  const int32_t leader = LeaderOf(pieces_[place]);
-  if (nearest.count() == 0 && leader != place) {
-    nearest.Offer(leader, rest_[static_cast<size_t>(leader)], true);
-  }
-}
-
-void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
-  if (visible_) {
-    Rebuild(order, places, [this](int32_t place) { return visible_->Has(place); });
-  } else {
-    Rebuild(order, places, kAllVisible);
-  }
-}
-
-template <typename IsVisible>
-void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
-                       const IsVisible& is_visible) {
-  constexpr int64_t kLanes = 4;
-  const auto rebuild_four = [&](std::span<const int32_t> some) {
-    StencilBatch batch;
-    for (size_t lane = 0; lane < some.size(); ++lane) {
-      const auto index = static_cast<size_t>(some[lane]);
-      const Vec3& centre = rest_[index];
-      Nearest nearest(centre);
-      Search(order, some[lane], nearest, is_visible);
-      const size_t count = nearest.count();
-      batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
-      Stencil& stencil = stencils_[index];
-      stencil.places.fill(count > 0 ? nearest[0] : -1);
-      for (size_t k = 0; k < count; ++k) {
-        stencil.places[k] = nearest[k];
-        const Vec3& neighbour = rest_[static_cast<size_t>(nearest[k])];
-        for (size_t axis = 0; axis < 3; ++axis) {
-          batch.offsets[k][axis][static_cast<int>(lane)] = neighbour[axis] - centre[axis];
-        }
-      }
-    }
-    const std::array<Int32x4, kStencilNodes> weights = StencilWeights(batch);
-    for (size_t lane = 0; lane < some.size(); ++lane) {
-      Stencil& stencil = stencils_[static_cast<size_t>(some[lane])];
-      const bool leads = stencil.leads();
-      for (size_t k = 0; k < kStencilNodes; ++k) {
-        stencil.weights[k] = leads ? 0 : weights[k][static_cast<int>(lane)];
-      }
-    }
-  };
-  const auto count = static_cast<int64_t>(places.size());
-  ParallelFor((count + kLanes - 1) / kLanes, 16, [&](int64_t begin, int64_t end) {
-    for (int64_t four = begin; four < end; ++four) {
-      const int64_t first = four * kLanes;
-      rebuild_four(places.subspan(static_cast<size_t>(first),
-                                  static_cast<size_t>(std::min(kLanes, count - first))));
-    }
-  });
-}
-
-void Stencils::Touch(int32_t place) {
-  // Several threads may say so of one place.
-  std::atomic_ref<uint8_t>(is_touched_[static_cast<size_t>(place)])
-      .store(1, std::memory_order_relaxed);
+void Stencils::Touch(int32_t place, Change change) {
+  // Several threads may say so, and the same, of one place.
+  std::atomic_ref<Change>(changes_[static_cast<size_t>(place)])
+      .store(change, std::memory_order_relaxed);
 }
 
 // Breaks only take places out of a search's reach. So a stencil stays as it is while all of its
@@ -251,15 +72,15 @@ void Stencils::Touch(int32_t place) {
 void Stencils::TouchAround(int32_t near) {
   const auto touch = [&](std::span<const int32_t> lost) {
     const Reach reach = reaches_[static_cast<size_t>(near)];
-    if (reach == Reach::kTwoEdges ||
-        (reach == Reach::kOneEdge && ContainsAny(stencils_[static_cast<size_t>(near)], lost))) {
-      Touch(near);
+    if (reach == kTwoEdges ||
+        (reach == kOneEdge && ContainsAny(stencils_[static_cast<size_t>(near)], lost))) {
+      Touch(near, kSearch);
     }
     const int32_t first = *std::min_element(lost.begin(), lost.end());
     for (const int32_t other : graph_.Neighbours(near)) {
       // Stencils have earlier places only.
-      if (other < first || reaches_[static_cast<size_t>(other)] != Reach::kTwoEdges) continue;
-      if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other);
+      if (other < first || reaches_[static_cast<size_t>(other)] != kTwoEdges) continue;
+      if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other, kSearch);
     }
   };
   std::array<int32_t, 64> lost;
@@ -280,11 +101,11 @@ void Stencils::TouchInSpace() {
   ParallelFor(graph_.places(), 8192, [&](int64_t begin, int64_t end) {
     for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
       const int32_t piece = pieces_[place];
-      if (reaches_[static_cast<size_t>(place)] != Reach::kSpace || !pieces_.IsNew(piece)) continue;
+      if (reaches_[static_cast<size_t>(place)] < kInSpace || !pieces_.IsNew(piece)) continue;
       const Stencil& stencil = stencils_[static_cast<size_t>(place)];
       if (stencil.leads()) continue;
       for (const int32_t other : stencil.places) {
-        if (pieces_[other] != piece) Touch(place);
+        if (pieces_[other] != piece) Touch(place, kSearch);
       }
     }
   });
@@ -300,6 +121,19 @@ void Stencils::TouchAll() {
   }
 }
 
+// Lists what was touched, and says where to search for it.
+void Stencils::TakeTouched() {
+  for (size_t place = 0; place < changes_.size(); ++place) {
+    const Change change = changes_[place];
+    if (change == kNone) continue;
+    changes_[place] = kNone;
+    if (visible_ && !visible_->Has(static_cast<int32_t>(place))) continue;
+    if (change == kSearchInSpace) reaches_[place] = kInSpace;
+    if (change == kSearchAnew) reaches_[place] = kOneEdge;
+    touched_.push_back(static_cast<int32_t>(place));
+  }
+}
+
 const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
                                                 std::span<const int32_t> broken) {
   touched_.clear();
@@ -307,12 +141,16 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
   if (std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end())) return touched_;
   if (!std::includes(broken.begin(), broken.end(), broken_.begin(), broken_.end())) {
     graph_.Heal();
-    std::fill(reaches_.begin(), reaches_.end(), Reach::kOneEdge);
+    std::fill(reaches_.begin(), reaches_.end(), kOneEdge);
     for (const int32_t edge : broken) graph_.Break(edge);
     pieces_.Find(order, graph_);
     if (visible_) {
       visible_->Heal();
       fresh_ = visible_->Break(graph_, broken);
+      for (auto& sizes : cubes_) {
+        for (CubeIndex& cubes : sizes) cubes.Clear();
+      }
+      ShowInCubes(order, visible_->places());
     }
     TouchAll();
   } else {
@@ -336,13 +174,10 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     if (visible_) {
       fresh_ = visible_->Break(graph_, fresh);
       FindLeaders();
-      TouchRoundFresh();
+      ShowInCubes(order, fresh_);
+      TouchRoundFresh(order);
     }
-    for (size_t place = 0; place < is_touched_.size(); ++place) {
-      const bool counts = !visible_ || visible_->Has(static_cast<int32_t>(place));
-      if (is_touched_[place] != 0 && counts) touched_.push_back(static_cast<int32_t>(place));
-      is_touched_[place] = 0;
-    }
+    TakeTouched();
   }
   broken_.assign(broken.begin(), broken.end());
   Rebuild(order, touched_);

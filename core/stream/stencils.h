@@ -69,35 +69,56 @@ class Stencils {
   Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
            std::span<const std::array<int32_t, 2>> edges, std::optional<VisiblePlaces> visible);
 
-  // Where a stencil's places were found. What later breaks can change it depends on that.
-  enum class Reach : uint8_t { kOneEdge, kTwoEdges, kSpace };
+  // Where a stencil's places were found: over one edge, over two, or in space, there in cubes of
+  // the least size, the next, ... What later changes it, and where to search then, depends on that.
+  using Reach = uint8_t;
+  static constexpr Reach kOneEdge = 0;
+  static constexpr Reach kTwoEdges = 1;
+  static constexpr Reach kInSpace = 2;
 
+  // What must be done about a stencil.
+  using Change = uint8_t;
+  static constexpr Change kNone = 0;
+  static constexpr Change kSearch = 1;         // from its reach on
+  static constexpr Change kSearchInSpace = 2;  // that is its reach; from the least cubes on
+  static constexpr Change kSearchAnew = 3;
+
+  // In stencil_search.cc.
   template <typename IsVisible>
   void Search(const NodeOrder& order, int32_t place, Nearest& nearest, const IsVisible& is_visible);
   template <typename IsVisible>
   void Rebuild(const NodeOrder& order, std::span<const int32_t> places,
                const IsVisible& is_visible);
   void Rebuild(const NodeOrder& order, std::span<const int32_t> places);
+  // In stencils_in_view.cc.
   void FindLeaders();
-  void TouchRoundFresh();
+  void ShowInCubes(const NodeOrder& order, std::span<const int32_t> places);
+  void TouchRoundFresh(const NodeOrder& order);
+  void TouchRing(int32_t between);
+
   void TouchAll();
-  void Touch(int32_t place);
+  void Touch(int32_t place, Change change);
   void TouchAround(int32_t near);
   void TouchInSpace();
+  void TakeTouched();
 
   std::vector<Vec3> rest_;  // m, by place
   EdgeGraph graph_;
-  std::vector<std::array<CubeIndex, kCubeSizes>> cubes_;  // of each group's coarser places
+  // Of each group: the coarser places, in a surface view those that are visible.
+  std::vector<std::array<CubeIndex, kCubeSizes>> cubes_;
   Pieces pieces_;
   std::vector<Stencil> stencils_;
   std::vector<Reach> reaches_;
   std::vector<int32_t> broken_;
   std::vector<uint8_t> lost_edges_;  // by place: 1 in a call that breaks some
-  std::vector<uint8_t> is_touched_;
+  std::vector<Change> changes_;      // by place; all kNone but in SetBroken
   std::vector<int32_t> touched_;
   // In a surface view.
   std::optional<VisiblePlaces> visible_;
   std::vector<int32_t> fresh_;
+  std::vector<uint8_t> marks_;  // by place; all 0 but in SetBroken
+  // Of each group: the cubes that touch one that coarser fresh places are in.
+  std::vector<std::array<CubeSet, kCubeSizes>> near_fresh_;
   std::vector<int32_t> leaders_;    // ascending
   std::vector<int32_t> leader_of_;  // of each piece: its first visible place, or -1
 };

@@ -10,18 +10,25 @@
 namespace cleave {
 namespace {
 
-// Whether the edges that a tet has left do not join its four vertices.
-bool IsApart(uint8_t mask) {
-  std::array<size_t, 4> joined = {0, 1, 2, 3};
-  for (size_t k = 0; k < 6; ++k) {
-    if ((mask >> k & 1) != 0) continue;
-    const auto [a, b] = kTetEdges[k];
-    const size_t from = joined[static_cast<size_t>(a)];
-    const size_t to = joined[static_cast<size_t>(b)];
-    std::replace(joined.begin(), joined.end(), std::max(from, to), std::min(from, to));
+// Of each set of a tet's edges, bit k for kTetEdges[k]: whether the others do not join its
+// vertices.
+constexpr std::array<bool, 64> kIsApart = [] {
+  std::array<bool, 64> is_apart{};
+  for (size_t broken = 0; broken < is_apart.size(); ++broken) {
+    std::array<size_t, 4> joined = {0, 1, 2, 3};
+    for (size_t k = 0; k < 6; ++k) {
+      if ((broken >> k & 1) != 0) continue;
+      const auto [a, b] = kTetEdges[k];
+      const size_t from = joined[static_cast<size_t>(a)];
+      const size_t to = joined[static_cast<size_t>(b)];
+      for (size_t& vertex : joined) {
+        if (vertex == std::max(from, to)) vertex = std::min(from, to);
+      }
+    }
+    for (const size_t vertex : joined) is_apart[broken] = is_apart[broken] || vertex > 0;
   }
-  return *std::max_element(joined.begin(), joined.end()) > 0;
-}
+  return is_apart;
+}();
 
 // Marks the places of faces that only one tet has.
 std::vector<uint8_t> MarkBoundary(size_t count, std::span<const std::array<int32_t, 4>> tets) {
@@ -70,22 +77,30 @@ std::vector<uint8_t> MarkBoundary(size_t count, std::span<const std::array<int32
 
 VisiblePlaces::VisiblePlaces(const NodeOrder& order, std::span<const std::array<int32_t, 2>> edges,
                              std::span<const std::array<int32_t, 4>> tets)
-    : masks_(tets.size(), 0), offsets_(edges.size() + 1, 0), edge_tets_(6 * tets.size()) {
+    : masks_(tets.size(), 0),
+      offsets_(edges.size() + 1, 0),
+      edge_tets_(6 * tets.size()),
+      edge_bits_(6 * tets.size()) {
   const size_t count = order.nodes.size();
   const EdgeLookup lookup(edges, count);
   const auto for_edges = [&](const auto& visit) {
     for (size_t tet = 0; tet < tets.size(); ++tet) {
-      for (const auto& [a, b] : kTetEdges) {
+      for (size_t k = 0; k < kTetEdges.size(); ++k) {
+        const auto [a, b] = kTetEdges[k];
         const int32_t edge =
             lookup.Find(tets[tet][static_cast<size_t>(a)], tets[tet][static_cast<size_t>(b)]);
-        visit(static_cast<size_t>(edge), static_cast<int32_t>(tet));
+        visit(static_cast<size_t>(edge), tet, k);
       }
     }
   };
-  for_edges([&](size_t edge, int32_t) { ++offsets_[edge + 1]; });
+  for_edges([&](size_t edge, size_t, size_t) { ++offsets_[edge + 1]; });
   for (size_t edge = 0; edge < edges.size(); ++edge) offsets_[edge + 1] += offsets_[edge];
   std::vector<int32_t> next(offsets_.begin(), offsets_.end() - 1);
-  for_edges([&](size_t edge, int32_t tet) { edge_tets_[static_cast<size_t>(next[edge]++)] = tet; });
+  for_edges([&](size_t edge, size_t tet, size_t k) {
+    const auto at = static_cast<size_t>(next[edge]++);
+    edge_tets_[at] = static_cast<int32_t>(tet);
+    edge_bits_[at] = static_cast<uint8_t>(1u << k);
+  });
   const std::vector<int32_t> places = order.PlacesOfNodes();
   tets_.reserve(tets.size());
   for (const std::array<int32_t, 4>& tet : tets) {
@@ -119,20 +134,14 @@ const std::vector<int32_t>& VisiblePlaces::Break(const EdgeGraph& graph,
     fresh_.push_back(place);
   };
   for (const int32_t edge : edges) {
-    const std::array<int32_t, 2> ends = graph.Ends(edge);
-    for (int32_t at = offsets_[static_cast<size_t>(edge)];
-         at < offsets_[static_cast<size_t>(edge) + 1]; ++at) {
-      const auto tet = static_cast<size_t>(edge_tets_[static_cast<size_t>(at)]);
-      const std::array<int32_t, 4>& nodes = tets_[tet];
-      for (size_t k = 0; k < 6; ++k) {
-        const int32_t a = nodes[static_cast<size_t>(kTetEdges[k][0])];
-        const int32_t b = nodes[static_cast<size_t>(kTetEdges[k][1])];
-        if ((a == ends[0] && b == ends[1]) || (a == ends[1] && b == ends[0])) {
-          masks_[tet] = static_cast<uint8_t>(masks_[tet] | 1u << k);
-        }
-      }
-      if (!IsApart(masks_[tet])) continue;
-      for (const int32_t place : nodes) {
+    for (auto at = static_cast<size_t>(offsets_[static_cast<size_t>(edge)]);
+         at < static_cast<size_t>(offsets_[static_cast<size_t>(edge) + 1]); ++at) {
+      const auto tet = static_cast<size_t>(edge_tets_[at]);
+      uint8_t& mask = masks_[tet];
+      const bool was_apart = kIsApart[mask];
+      mask |= edge_bits_[at];
+      if (was_apart || !kIsApart[mask]) continue;
+      for (const int32_t place : tets_[tet]) {
         uint8_t& is_apart = is_apart_[static_cast<size_t>(place)];
         if (is_apart != 0) continue;
         is_apart = 1;

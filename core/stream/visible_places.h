@@ -37,6 +37,8 @@ class VisiblePlaces {
   std::vector<uint8_t> masks_;                // of each tet: bit k for a broken edge kTetEdges[k]
   std::vector<int32_t> offsets_;              // of each edge in edge_tets_
   std::vector<int32_t> edge_tets_;
+  std::vector<uint8_t>
+      edge_bits_;  // of each entry of edge_tets_: the edge's bit in that tet's mask
   std::vector<uint8_t> is_boundary_;  // by place
   std::vector<uint8_t> is_visible_;
   std::vector<uint8_t> is_apart_;  // by place: of a tet that has come apart

@@ -1,10 +1,11 @@
 // Prints sizes and speeds of the frame stream beside other ways to store the same frames, and what
 // a frame with fracture costs. Asserts nothing. Speeds are of one thread, by its own clock, as
-// float32 positions. `core_stream_bench [bar | noisy | large | simulated | fracture] ...`; without
-// names all but large.
+// float32 positions. `core_stream_bench [bar | noisy | large | simulated | fracture |
+// fracture_surface] ...`; without names all but large.
 
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -24,12 +25,29 @@ namespace cleave {
 namespace {
 
 constexpr int64_t kFrames = 96;
+constexpr int kRounds = 5;  // of which the best counts, where frames are timed one by one
 
 double ThreadSeconds() {
   timespec time;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
+
+// By the wall clock, and by that of all threads together, which other programs do not disturb.
+class Watch {
+ public:
+  double Milliseconds() const { return 1e3 * wall_.Seconds(); }
+  double ThreadMilliseconds() const { return 1e3 * (ProcessSeconds() - start_); }
+
+ private:
+  static double ProcessSeconds() {
+    timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  Stopwatch wall_;
+  double start_ = ProcessSeconds();
+};
 
 // Frames to measure on.
 struct Sequence {
@@ -195,12 +213,12 @@ void CompareSimulated() {
            }});
 }
 
-// What frames with fracture cost by the wall clock: all that it takes to encode one, and of that
-// stencils and pieces.
-void MeasureFracture(int cells, int threads) {
+// What frames with fracture cost by the wall clock: all that it takes to encode and to decode one,
+// and of that stencils, pieces and what is in view.
+void MeasureFracture(int cells, int threads, uint16_t view) {
   const BreakingBar bar = MakeBreakingBar(cells);
   const Sequence sequence = {"", &bar.mesh, &bar.incidence, 0, {}};
-  const StreamMesh mesh(bar.mesh.rest_positions, bar.incidence.edges);
+  const StreamMesh mesh(bar.mesh.rest_positions, bar.incidence.edges, bar.mesh.tets);
   tbb::task_arena(threads).execute([&] {
     const NodeOrder order = MakeNodeOrder(bar.mesh.rest_positions);
     std::vector<Vec3> by_place;
@@ -208,32 +226,71 @@ void MeasureFracture(int cells, int threads) {
       by_place.push_back(bar.mesh.rest_positions[static_cast<size_t>(node)]);
     }
     const Stopwatch setup;
-    Stencils stencils(order, by_place, bar.incidence.edges);
-    std::printf("fracture: %zu nodes, %d threads; stencils at first %.0f ms\n", by_place.size(),
-                threads, 1e3 * setup.Seconds());
-    const auto header = MakeStreamHeader(ParametersOf(sequence, 1e-4 * Diagonal(bar.mesh),
-                                                      kPredictorInterpolation, kCoderContextRans),
-                                         mesh.rest_positions);
-    auto encoder = FrameEncoder::Create(*header, mesh);
-    size_t broken = 0;
-    Frame frame;
+    const bool is_surface = view == kViewSurface;
+    const Stencils at_rest = is_surface ? Stencils(order, by_place, mesh)
+                                        : Stencils(order, by_place, bar.incidence.edges);
+    std::printf("fracture, %s view: %zu nodes, %d threads; stencils at first %.0f ms\n",
+                is_surface ? "surface" : "state", by_place.size(), threads, 1e3 * setup.Seconds());
+    const auto header =
+        MakeStreamHeader(ParametersOf(sequence, 1e-4 * Diagonal(bar.mesh), kPredictorInterpolation,
+                                      kCoderContextRans, view),
+                         mesh.rest_positions);
+    const auto encoder_at_rest = FrameEncoder::Create(*header, mesh);
+    const auto decoder_at_rest = FrameDecoder::Create(encoder_at_rest->header_bytes(), mesh);
     // From a key frame, past the frame after it, whose statistics are fresh.
+    std::vector<Frame> frames;
     for (int64_t number = BreakingBar::kFirstBreak - 2; number <= BreakingBar::kLastBreak;
          ++number) {
-      MoveBar(bar, number, 0, frame);
-      const Stopwatch watch;
-      const size_t touched = stencils.SetBroken(order, frame.broken_edges).size();
-      const double of_stencils = watch.Seconds();
-      const Stopwatch whole;
-      const auto encoded = encoder->Encode(frame);
-      const double of_all = whole.Seconds();
-      std::printf(
-          "  frame %2lld: %6zu edges break, %6zu stencils, %4d pieces, %6.2f ms; with all else "
-          "%6.2f ms%s\n",
-          static_cast<long long>(number), frame.broken_edges.size() - broken, touched,
-          stencils.pieces().count(), 1e3 * of_stencils, 1e3 * of_all,
-          encoded->header.kind == FrameKind::kKey ? ", a key frame" : "");
-      broken = frame.broken_edges.size();
+      MoveBar(bar, number, 0, frames.emplace_back());
+    }
+    struct Row {
+      size_t touched = 0;
+      size_t fresh = 0;
+      int32_t pieces = 0;
+      bool key = false;
+      std::array<double, 6> times;
+    };
+    std::vector<Row> rows(frames.size());
+    for (Row& row : rows) row.times.fill(1e9);
+    for (int round = 0; round < kRounds; ++round) {
+      Stencils stencils = at_rest;
+      FrameEncoder encoder = *encoder_at_rest;
+      FrameDecoder decoder = *decoder_at_rest;
+      for (size_t at = 0; at < frames.size(); ++at) {
+        Row& row = rows[at];
+        const auto took = [&](size_t column, const Watch& watch) {
+          row.times[column] = std::min(row.times[column], watch.Milliseconds());
+          row.times[column + 1] = std::min(row.times[column + 1], watch.ThreadMilliseconds());
+        };
+        const Watch of_stencils;
+        row.touched = stencils.SetBroken(order, frames[at].broken_edges).size();
+        took(0, of_stencils);
+        const Watch of_encoding;
+        const auto encoded = encoder.Encode(frames[at]);
+        took(2, of_encoding);
+        const Watch of_decoding;
+        const absl::Status applied = decoder.Apply(encoded->bytes);
+        took(4, of_decoding);
+        if (!applied.ok()) std::printf("%s\n", applied.ToString().c_str());
+        row.fresh = stencils.fresh().size();
+        row.pieces = stencils.pieces().count();
+        row.key = encoded->header.kind == FrameKind::kKey;
+      }
+    }
+    std::printf("  %5s %7s %8s %7s %6s   best of %d, ms by the wall clock (of all threads):\n", "",
+                "edges", "stencils", "come in", "", kRounds);
+    std::printf("  %5s %7s %8s %7s %6s %17s %17s %17s\n", "frame", "break", "anew", "view",
+                "pieces", "stencils, pieces", "encode", "decode");
+    size_t broken = 0;
+    for (size_t at = 0; at < frames.size(); ++at) {
+      const Row& row = rows[at];
+      std::printf("  %5lld %7zu %8zu %7zu %6d", static_cast<long long>(frames[at].frame),
+                  frames[at].broken_edges.size() - broken, row.touched, row.fresh, row.pieces);
+      for (size_t column = 0; column < row.times.size(); column += 2) {
+        std::printf(" %8.2f (%6.2f)", row.times[column], row.times[column + 1]);
+      }
+      std::printf("%s\n", row.key ? ", a key frame" : "");
+      broken = frames[at].broken_edges.size();
     }
   });
 }
@@ -243,7 +300,7 @@ void MeasureFracture(int cells, int threads) {
 
 int main(int count, char** arguments) {
   std::vector<std::string> names(arguments + 1, arguments + count);
-  if (names.empty()) names = {"bar", "noisy", "simulated", "fracture"};
+  if (names.empty()) names = {"bar", "noisy", "simulated", "fracture", "fracture_surface"};
   for (const std::string& name : names) {
     tbb::task_arena(1).execute([&] {
       if (name == "bar") cleave::CompareBar("bar by formulas", 16, 0);
@@ -252,8 +309,12 @@ int main(int count, char** arguments) {
       if (name == "simulated") cleave::CompareSimulated();
     });
     if (name == "fracture") {
-      cleave::MeasureFracture(36, 1);
-      cleave::MeasureFracture(36, 2);
+      cleave::MeasureFracture(36, 1, cleave::kViewState);
+      cleave::MeasureFracture(36, 2, cleave::kViewState);
+    }
+    if (name == "fracture_surface") {
+      cleave::MeasureFracture(36, 1, cleave::kViewSurface);
+      cleave::MeasureFracture(36, 2, cleave::kViewSurface);
     }
   }
 }

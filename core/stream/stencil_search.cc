@@ -1,0 +1,184 @@
+// How Stencils finds the places of a stencil.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/parallel.h"
+#include "core/stream/stencils.h"
+
+namespace cleave {
+namespace {
+
+constexpr size_t kEnoughNear = 7;          // places over one edge that make a search stop
+constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther out
+
+// Places on their way to a Nearest: what is to be read of them is fetched meanwhile.
+class Candidates {
+ public:
+  Candidates(const std::vector<Vec3>& rest, Nearest& nearest) : rest_(rest), nearest_(nearest) {}
+
+  // Offers `place` sooner or later, if `wanted`.
+  void Add(int32_t place, bool wanted) {
+    __builtin_prefetch(rest_.data() + place);
+    places_[count_] = place;
+    count_ += static_cast<size_t>(wanted);
+    if (count_ == places_.size()) Flush([](int32_t) { return true; });
+  }
+  // Offers those that were added and of which `is_wanted(place)`.
+  template <typename IsWanted>
+  void Flush(const IsWanted& is_wanted) {
+    for (size_t at = 0; at < count_; ++at) {
+      const int32_t place = places_[at];
+      nearest_.Offer(place, rest_[static_cast<size_t>(place)], is_wanted(place));
+    }
+    count_ = 0;
+  }
+  bool HasRoom() const { return count_ + 1 < places_.size(); }
+
+ private:
+  const std::vector<Vec3>& rest_;
+  Nearest& nearest_;
+  size_t count_ = 0;
+  std::array<int32_t, 256> places_;
+};
+
+// In the state view.
+constexpr auto kAllVisible = [](int32_t) { return true; };
+
+}  // namespace
+
+// The places that a place is to be predicted from.
+template <typename IsVisible>
+void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
+                      const IsVisible& is_visible) {
+  const auto index = static_cast<size_t>(place);
+  const size_t group = order.GroupOf(place);
+  const int32_t coarse_end = order.group_begins[group];
+  Candidates candidates(rest_, nearest);
+  const auto any = [](int32_t) { return true; };
+  // Breaks only take places away, so that a search never ends nearer than it did before.
+  Reach& reach = reaches_[index];
+  if (reach < kInSpace) {
+    for (const int32_t other : graph_.Neighbours(place)) {
+      if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
+      candidates.Add(other, other >= 0 && is_visible(other));
+    }
+    candidates.Flush(any);
+    nearest.Settle();
+    if (nearest.count() < kEnoughNear) reach = kTwoEdges;
+  }
+  if (reach == kTwoEdges) {
+    for (const int32_t between : graph_.Neighbours(place)) {
+      if (between >= 0) graph_.Prefetch(between);
+    }
+    // Places that came by lately, since most come by several times.
+    std::array<int32_t, 128> recent;
+    recent.fill(-1);
+    for (size_t k = 0; k < nearest.count(); ++k) {
+      recent[static_cast<size_t>(nearest[k]) % recent.size()] = nearest[k];
+    }
+    for (const int32_t between : graph_.Neighbours(place)) {
+      if (between < 0) continue;
+      for (const int32_t other : graph_.Neighbours(between)) {
+        if (other >= coarse_end) break;
+        int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
+        candidates.Add(other, other >= 0 && same != other && is_visible(other));
+        same = other;
+      }
+    }
+    candidates.Flush(any);
+    nearest.Settle();
+    if (nearest.count() < kEnough) reach = kInSpace;
+  }
+  if (reach >= kInSpace) {
+    const int32_t piece = pieces_[place];
+    const auto same_piece = [&](int32_t other) { return pieces_[other] == piece; };
+    // What smaller cubes hold is in the larger ones too.
+    for (size_t size = reach - kInSpace; group > 0; ++size) {
+      const CubeIndex& cubes = cubes_[group][size];
+      const bool is_largest = size + 1 == kCubeSizes || cubes.bits() == kMortonBits;
+      reach = static_cast<Reach>(kInSpace + size);
+      const CubesAround around(order.codes[index], cubes.bits());
+      for (const uint64_t cube : around.cubes()) cubes.Prefetch(cube);
+      std::array<std::span<const int32_t>, 27> found;
+      size_t count = 0;
+      size_t places = 0;
+      for (const uint64_t cube : around.cubes()) {
+        found[count] = cubes.In(cube);
+        places += found[count].size();
+        __builtin_prefetch(found[count++].data());
+      }
+      if (places < kEnough && !is_largest) continue;
+      nearest.Clear();
+      for (const std::span<const int32_t> in_cube : std::span(found).first(count)) {
+        for (const int32_t other : in_cube) {
+          __builtin_prefetch(pieces_.labels().data() + other);
+          candidates.Add(other, true);
+          if (!candidates.HasRoom()) candidates.Flush(same_piece);
+        }
+      }
+      candidates.Flush(same_piece);
+      nearest.Settle();
+      if (nearest.count() >= kEnough || is_largest) break;
+    }
+    if (group == 0) nearest.Clear();
+  }
+  const int32_t leader = LeaderOf(pieces_[place]);
+  if (nearest.count() == 0 && leader != place) {
+    nearest.Offer(leader, rest_[static_cast<size_t>(leader)], true);
+  }
+}
+
+void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
+  if (visible_) {
+    Rebuild(order, places, [this](int32_t place) { return visible_->Has(place); });
+  } else {
+    Rebuild(order, places, kAllVisible);
+  }
+}
+
+template <typename IsVisible>
+void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
+                       const IsVisible& is_visible) {
+  constexpr int64_t kLanes = 4;
+  const auto rebuild_four = [&](std::span<const int32_t> some) {
+    StencilBatch batch;
+    for (size_t lane = 0; lane < some.size(); ++lane) {
+      const auto index = static_cast<size_t>(some[lane]);
+      const Vec3& centre = rest_[index];
+      Nearest nearest(centre);
+      Search(order, some[lane], nearest, is_visible);
+      const size_t count = nearest.count();
+      batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
+      Stencil& stencil = stencils_[index];
+      stencil.places.fill(count > 0 ? nearest[0] : -1);
+      for (size_t k = 0; k < count; ++k) {
+        stencil.places[k] = nearest[k];
+        const Vec3& neighbour = rest_[static_cast<size_t>(nearest[k])];
+        for (size_t axis = 0; axis < 3; ++axis) {
+          batch.offsets[k][axis][static_cast<int>(lane)] = neighbour[axis] - centre[axis];
+        }
+      }
+    }
+    const std::array<Int32x4, kStencilNodes> weights = StencilWeights(batch);
+    for (size_t lane = 0; lane < some.size(); ++lane) {
+      Stencil& stencil = stencils_[static_cast<size_t>(some[lane])];
+      const bool leads = stencil.leads();
+      for (size_t k = 0; k < kStencilNodes; ++k) {
+        stencil.weights[k] = leads ? 0 : weights[k][static_cast<int>(lane)];
+      }
+    }
+  };
+  const auto count = static_cast<int64_t>(places.size());
+  ParallelFor((count + kLanes - 1) / kLanes, 16, [&](int64_t begin, int64_t end) {
+    for (int64_t four = begin; four < end; ++four) {
+      const int64_t first = four * kLanes;
+      rebuild_four(places.subspan(static_cast<size_t>(first),
+                                  static_cast<size_t>(std::min(kLanes, count - first))));
+    }
+  });
+}
+
+}  // namespace cleave
