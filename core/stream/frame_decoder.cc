@@ -291,16 +291,17 @@ void FrameDecoder::ShowVisible() {
   const Stencils& stencils = interpolation_->stencils();
   const std::vector<int32_t>& nodes = interpolation_->order().nodes;
   frame_.visible.assign(nodes.size(), 0);
-  for (size_t place = 0; place < nodes.size(); ++place) {
-    const auto node = static_cast<size_t>(nodes[place]);
-    const auto at = static_cast<int32_t>(place);
-    if (stencils.visible()->Has(at)) {
-      frame_.visible[node] = 1;
-    } else if (const int32_t leader = stencils.LeaderOf(stencils.pieces()[at]); leader >= 0) {
-      frame_.positions[node] =
-          frame_.positions[static_cast<size_t>(nodes[static_cast<size_t>(leader)])];
+  ParallelFor(static_cast<int64_t>(nodes.size()), 4096, [&](int64_t begin, int64_t end) {
+    for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
+      const auto node = static_cast<size_t>(nodes[static_cast<size_t>(place)]);
+      if (stencils.visible()->Has(place)) {
+        frame_.visible[node] = 1;
+      } else if (const int32_t leader = stencils.LeaderOf(stencils.pieces()[place]); leader >= 0) {
+        frame_.positions[node] =
+            frame_.positions[static_cast<size_t>(nodes[static_cast<size_t>(leader)])];
+      }
     }
-  }
+  });
 }
 
 }  // namespace cleave

@@ -197,9 +197,13 @@ void InterpolationEncoder::SetBroken(bool key, std::span<const int32_t> broken,
   if (!header_.is_surface()) return;
   // Hidden places are at 0 in every state, and so they stay there.
   const VisiblePlaces& visible = *predictor_.stencils().visible();
-  for (size_t place = 0; place < targets_.size(); ++place) {
-    if (!visible.Has(static_cast<int32_t>(place))) targets_[place] = Double4{};
-  }
+  ParallelFor(static_cast<int64_t>(targets_.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
+    for (int64_t place = begin; place < end; ++place) {
+      if (!visible.Has(static_cast<int32_t>(place))) {
+        targets_[static_cast<size_t>(place)] = Double4{};
+      }
+    }
+  });
 }
 
 void InterpolationEncoder::Encode(bool key, const StreamState& state, FrameHeader& header,

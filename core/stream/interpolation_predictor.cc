@@ -45,20 +45,36 @@ std::span<const int32_t> InterpolationPredictor::PlacesWithin(int64_t first, int
   return {begin, std::lower_bound(begin, all.end(), first + count)};
 }
 
-// Where a place that has come into view was when nobody saw it, by how it lies among others at
-// rest.
-void InterpolationPredictor::MakeHistory(int32_t place, std::span<int32_t> positions) const {
-  const auto at = 3 * static_cast<size_t>(place);
-  if (!stencils_[place].leads()) {
-    const Int32x4 blend = ToInts(BlendOf(place, [&](int32_t of) {
-      return LoadInts(positions.data() + 3 * static_cast<size_t>(of));
-    }));
-    const Int32x4 detail = DetailIn(place, rest_);
-    for (int axis = 0; axis < 3; ++axis) {
-      positions[at + static_cast<size_t>(axis)] = Within(int64_t{blend[axis]} + detail[axis]);
-    }
-    return;
+// Where places that have come into view were when nobody saw them, by how they lie among others at
+// rest: those that lead, which need none of the others, and then group after group.
+void InterpolationPredictor::MakeHistory(std::span<int32_t> positions) const {
+  const std::vector<int32_t>& fresh = stencils_.fresh();
+  for (const int32_t place : fresh) {
+    if (stencils_[place].leads()) MakeHistoryOfLeader(place, positions);
   }
+  auto begin = fresh.begin();
+  while (begin != fresh.end()) {
+    const int32_t group_end = order_.group_begins[order_.GroupOf(*begin) + 1];
+    const auto end = std::lower_bound(begin, fresh.end(), group_end);
+    ParallelFor(end - begin, 512, [&](int64_t from, int64_t to) {
+      for (int64_t at = from; at < to; ++at) {
+        const int32_t place = begin[at];
+        if (stencils_[place].leads()) continue;
+        const Int32x4 blend = ToInts(BlendIn(place, positions));
+        const Int32x4 detail = DetailIn(place, rest_);
+        for (int axis = 0; axis < 3; ++axis) {
+          positions[3 * static_cast<size_t>(place) + static_cast<size_t>(axis)] =
+              Within(int64_t{blend[axis]} + detail[axis]);
+        }
+      }
+    });
+    begin = end;
+  }
+}
+
+void InterpolationPredictor::MakeHistoryOfLeader(int32_t place,
+                                                 std::span<int32_t> positions) const {
+  const auto at = 3 * static_cast<size_t>(place);
   const int32_t neighbour = stencils_.KnownNeighbour(place);
   for (size_t axis = 0; axis < 3; ++axis) {
     int64_t moved = 0;
@@ -70,13 +86,16 @@ void InterpolationPredictor::MakeHistory(int32_t place, std::span<int32_t> posit
   }
 }
 
+// The places of a stencil are before another one, so that four numbers are there.
+Double4 InterpolationPredictor::BlendIn(int32_t place, std::span<const int32_t> positions) const {
+  return BlendOf(
+      place, [&](int32_t of) { return LoadInts(positions.data() + 3 * static_cast<size_t>(of)); });
+}
+
 Int32x4 InterpolationPredictor::DetailIn(int32_t place, std::span<const int32_t> positions) const {
   if (stencils_[place].leads()) return Int32x4{};
-  // The places of a stencil are before another one, so that four numbers are there.
-  const Double4 blend = BlendOf(
-      place, [&](int32_t of) { return LoadInts(positions.data() + 3 * static_cast<size_t>(of)); });
   const int32_t* position = positions.data() + 3 * static_cast<size_t>(place);
-  const Int32x4 whole = ToInts(blend);
+  const Int32x4 whole = ToInts(BlendIn(place, positions));
   return Int32x4{position[0] - whole[0], position[1] - whole[1], position[2] - whole[2], 0};
 }
 
@@ -113,10 +132,7 @@ void InterpolationPredictor::Prepare(bool key, double tolerance, std::span<const
   const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
   const bool grid_is_new = SetGrid(tolerance);
   if (!key) {
-    for (const int32_t place : stencils_.fresh()) {
-      MakeHistory(place, last);
-      MakeHistory(place, before);
-    }
+    for (const std::span<int32_t> positions : {last, before}) MakeHistory(positions);
   }
   MakeDetails(history_is_new || grid_is_new ? places() : touched, last, before);
 }

@@ -104,11 +104,13 @@ class InterpolationPredictor {
         ((term(0) + term(1)) + (term(2) + term(3))) + ((term(4) + term(5)) + (term(6) + term(7)));
     return Clamp(ToDoubles(ShiftRight<kStencilBits>(sum + kStencilOne / 2)));
   }
+  Double4 BlendIn(int32_t place, std::span<const int32_t> positions) const;
   Int32x4 DetailIn(int32_t place, std::span<const int32_t> positions) const;
   bool SetGrid(double tolerance);
   void MakeDetails(const std::vector<int32_t>& places, std::span<const int32_t> last,
                    std::span<const int32_t> before);
-  void MakeHistory(int32_t place, std::span<int32_t> positions) const;
+  void MakeHistory(std::span<int32_t> positions) const;
+  void MakeHistoryOfLeader(int32_t place, std::span<int32_t> positions) const;
   void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);
 
   NodeOrder order_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <numeric>
@@ -56,21 +57,33 @@ bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
   constexpr uint8_t kInside = 1;
   constexpr uint8_t kLink = 2;
   std::vector<uint8_t> lost(blocks_.size(), 0);
-  for (const int32_t edge : edges) {
-    const auto [a, b] = graph.Ends(edge);
-    const int32_t rank_a = ranks_[static_cast<size_t>(a)];
-    const int32_t rank_b = ranks_[static_cast<size_t>(b)];
-    const auto block_a = static_cast<size_t>(rank_a / kBlock);
-    const auto block_b = static_cast<size_t>(rank_b / kBlock);
-    if (block_a == block_b) {
-      joins_[static_cast<size_t>(rank_a)] &= ~(uint64_t{1} << (rank_b % kBlock));
-      joins_[static_cast<size_t>(rank_b)] &= ~(uint64_t{1} << (rank_a % kBlock));
-      lost[block_a] |= kInside;
-    } else {
-      if (HasLink(block_a, rank_a, rank_b)) lost[block_a] |= kLink;
-      if (HasLink(block_b, rank_b, rank_a)) lost[block_b] |= kLink;
+  const auto lose = [&](size_t block, uint8_t what) {
+    const std::atomic_ref<uint8_t> of_block(lost[block]);
+    if ((of_block.load(std::memory_order_relaxed) & what) == 0) {
+      of_block.fetch_or(what, std::memory_order_relaxed);
     }
-  }
+  };
+  const auto part = [&](int32_t rank, int32_t other) {
+    std::atomic_ref<uint64_t>(joins_[static_cast<size_t>(rank)])
+        .fetch_and(~(uint64_t{1} << (other % kBlock)), std::memory_order_relaxed);
+  };
+  ParallelFor(static_cast<int64_t>(edges.size()), 512, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) {
+      const auto [a, b] = graph.Ends(edges[static_cast<size_t>(at)]);
+      const int32_t rank_a = ranks_[static_cast<size_t>(a)];
+      const int32_t rank_b = ranks_[static_cast<size_t>(b)];
+      const auto block_a = static_cast<size_t>(rank_a / kBlock);
+      const auto block_b = static_cast<size_t>(rank_b / kBlock);
+      if (block_a == block_b) {
+        part(rank_a, rank_b);
+        part(rank_b, rank_a);
+        lose(block_a, kInside);
+      } else {
+        if (HasLink(block_a, rank_a, rank_b)) lose(block_a, kLink);
+        if (HasLink(block_b, rank_b, rank_a)) lose(block_b, kLink);
+      }
+    }
+  });
   std::vector<int32_t> touched;
   for (size_t block = 0; block < blocks_.size(); ++block) {
     if (lost[block] != 0) touched.push_back(static_cast<int32_t>(block));
@@ -194,8 +207,12 @@ bool Pieces::Join() {
   }
   for (const Block& block : blocks_) {
     for (const Link& link : block.links) {
-      const int32_t from = Root(clumps_[static_cast<size_t>(link.from)]);
-      const int32_t to = Root(clumps_[static_cast<size_t>(link.to)]);
+      int32_t from = clumps_[static_cast<size_t>(link.from)];
+      int32_t to = clumps_[static_cast<size_t>(link.to)];
+      // Most are joined already.
+      if (joined_[static_cast<size_t>(from)] == joined_[static_cast<size_t>(to)]) continue;
+      from = Root(from);
+      to = Root(to);
       if (from == to) continue;
       joined_[static_cast<size_t>(std::max(from, to))] = std::min(from, to);
       --pieces;

@@ -52,7 +52,7 @@ constexpr auto kAllVisible = [](int32_t) { return true; };
 // The places that a place is to be predicted from.
 template <typename IsVisible>
 void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
-                      const IsVisible& is_visible) {
+                      IsVisible is_visible) {
   const auto index = static_cast<size_t>(place);
   const size_t group = order.GroupOf(place);
   const int32_t coarse_end = order.group_begins[group];
@@ -66,8 +66,11 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
       candidates.Add(other, other >= 0 && is_visible(other));
     }
     candidates.Flush(any);
-    nearest.Settle();
-    if (nearest.count() < kEnoughNear) reach = kTwoEdges;
+    if (nearest.count() < kEnoughNear) {
+      reach = kTwoEdges;
+    } else {
+      nearest.Settle();
+    }
   }
   if (reach == kTwoEdges) {
     for (const int32_t between : graph_.Neighbours(place)) {
@@ -84,12 +87,14 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
       for (const int32_t other : graph_.Neighbours(between)) {
         if (other >= coarse_end) break;
         int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
-        candidates.Add(other, other >= 0 && same != other && is_visible(other));
+        // Without branches, which nobody could predict.
+        const bool is_new = (other >= 0) & (same != other);
+        candidates.Add(other, is_new & is_visible(std::max(other, 0)));
         same = other;
       }
     }
     candidates.Flush(any);
-    nearest.Settle();
+    if (nearest.count() >= kEnough) nearest.Settle();
     if (nearest.count() < kEnough) reach = kInSpace;
   }
   if (reach >= kInSpace) {
@@ -133,7 +138,9 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
 
 void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
   if (visible_) {
-    Rebuild(order, places, [this](int32_t place) { return visible_->Has(place); });
+    // By value, so that nothing that is written can change where it reads.
+    const uint8_t* const visible = visible_->marks().data();
+    Rebuild(order, places, [visible](int32_t place) { return visible[place] != 0; });
   } else {
     Rebuild(order, places, kAllVisible);
   }

@@ -85,7 +85,7 @@ class Stencils {
 
   // In stencil_search.cc.
   template <typename IsVisible>
-  void Search(const NodeOrder& order, int32_t place, Nearest& nearest, const IsVisible& is_visible);
+  void Search(const NodeOrder& order, int32_t place, Nearest& nearest, IsVisible is_visible);
   template <typename IsVisible>
   void Rebuild(const NodeOrder& order, std::span<const int32_t> places,
                const IsVisible& is_visible);

@@ -10,6 +10,9 @@
 namespace cleave {
 namespace {
 
+constexpr uint8_t kSeen = 1;   // visible before
+constexpr uint8_t kFresh = 2;  // only since the Break in work
+
 // Of each set of a tet's edges, bit k for kTetEdges[k]: whether the others do not join its
 // vertices.
 constexpr std::array<bool, 64> kIsApart = [] {
@@ -120,18 +123,21 @@ void VisiblePlaces::Heal() {
 
 void VisiblePlaces::List() {
   places_.clear();
+  fresh_.clear();
   for (size_t place = 0; place < is_visible_.size(); ++place) {
-    if (is_visible_[place] != 0) places_.push_back(static_cast<int32_t>(place));
+    if (is_visible_[place] == 0) continue;
+    places_.push_back(static_cast<int32_t>(place));
+    if (is_visible_[place] == kSeen) continue;
+    fresh_.push_back(static_cast<int32_t>(place));
+    is_visible_[place] = kSeen;
   }
 }
 
 const std::vector<int32_t>& VisiblePlaces::Break(const EdgeGraph& graph,
                                                  std::span<const int32_t> edges) {
-  fresh_.clear();
   const auto show = [&](int32_t place) {
-    if (is_visible_[static_cast<size_t>(place)] != 0) return;
-    is_visible_[static_cast<size_t>(place)] = 1;
-    fresh_.push_back(place);
+    uint8_t& is_visible = is_visible_[static_cast<size_t>(place)];
+    is_visible = is_visible == 0 ? kFresh : is_visible;
   };
   for (const int32_t edge : edges) {
     for (auto at = static_cast<size_t>(offsets_[static_cast<size_t>(edge)]);
@@ -150,8 +156,7 @@ const std::vector<int32_t>& VisiblePlaces::Break(const EdgeGraph& graph,
       }
     }
   }
-  std::sort(fresh_.begin(), fresh_.end());
-  if (!fresh_.empty()) List();
+  List();
   return fresh_;
 }
 

@@ -28,7 +28,8 @@ class VisiblePlaces {
   void Heal();
 
   bool Has(int32_t place) const { return is_visible_[static_cast<size_t>(place)] != 0; }
-  const std::vector<int32_t>& places() const { return places_; }  // visible ones, ascending
+  const std::vector<uint8_t>& marks() const { return is_visible_; }  // by place: 0 or not
+  const std::vector<int32_t>& places() const { return places_; }     // visible ones, ascending
 
  private:
   void List();
