@@ -143,7 +143,11 @@ TEST(StreamMutation, ForgedFramesAreRefusedAndChangeNothingOrAreRight) {
           ASSERT_LT(status.message().size(), 1000u);
           ASSERT_EQ(decoder->state().frame, before.frame);
           ASSERT_EQ(decoder->state().positions, before.positions);
+          if (before.has_previous) {
+            ASSERT_EQ(decoder->state().previous, before.previous);
+          }
           ASSERT_EQ(decoder->state().exact, before.exact);
+          ASSERT_EQ(decoder->state().shifts, before.shifts);
           ASSERT_EQ(decoder->state().broken_edges, before.broken_edges);
           continue;
         }

@@ -1,0 +1,122 @@
+#include "core/stream/cube_index.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "core/base/counter_rng.h"
+#include "gtest/gtest.h"
+
+namespace cleave {
+namespace {
+
+using Cube = std::array<int64_t, 3>;
+
+uint64_t CodeOf(const Cube& cube) {
+  uint64_t code = 0;
+  for (int bit = 0; bit < kMortonBits; ++bit) {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      code |= (static_cast<uint64_t>(cube[axis]) >> bit & 1) << (3 * bit + static_cast<int>(axis));
+    }
+  }
+  return code;
+}
+
+int64_t Pick(uint64_t index, uint64_t axis, int64_t below) {
+  return static_cast<int64_t>(UniformDraw(5, RandomStream::kMeshJitter, index, axis) *
+                              static_cast<double>(below));
+}
+
+// Those of a grid of `side` cubes along each axis that touch a cube, and itself.
+std::vector<Cube> Around(const Cube& cube, int64_t side) {
+  std::vector<Cube> around;
+  for (int64_t x = cube[0] - 1; x <= cube[0] + 1; ++x) {
+    for (int64_t y = cube[1] - 1; y <= cube[1] + 1; ++y) {
+      for (int64_t z = cube[2] - 1; z <= cube[2] + 1; ++z) {
+        if (std::min({x, y, z}) >= 0 && std::max({x, y, z}) < side) around.push_back({x, y, z});
+      }
+    }
+  }
+  return around;
+}
+
+TEST(CubeIndex, CubesAroundStayInTheGrid) {
+  for (const int bits : {0, 9, 18, 20, 21}) {
+    const int64_t side = int64_t{1} << (kMortonBits - bits);
+    for (uint64_t round = 0; round < 60; ++round) {
+      // Of three in four an axis is at a border.
+      Cube cube = {Pick(round, 0, side), Pick(round, 1, side), Pick(round, 2, side)};
+      if (round % 4 < 3) cube[round % 4] = round % 8 < 4 ? 0 : side - 1;
+      const CubesAround around(CodeOf(cube) << (3 * bits), bits);
+      std::vector<uint64_t> expected;
+      for (const Cube& other : Around(cube, side)) expected.push_back(CodeOf(other));
+      std::vector<uint64_t> found(around.cubes().begin(), around.cubes().end());
+      std::sort(expected.begin(), expected.end());
+      std::sort(found.begin(), found.end());
+      ASSERT_EQ(found, expected) << bits << " " << round;
+    }
+  }
+}
+
+TEST(CubeIndex, ASetWidensByTheCubesThatTouchIt) {
+  CubeSet set;
+  for (const int bits : {0, 12, 16, 19, 20, 21}) {
+    const int64_t side = int64_t{1} << (kMortonBits - bits);
+    for (const uint64_t size : {0u, 1u, 7u, 300u}) {
+      set.Clear(bits);
+      std::set<uint64_t> expected;
+      std::vector<Cube> near;
+      for (uint64_t index = 0; index < size; ++index) {
+        // Far apart, and in a corner of the grid.
+        const int64_t extent = index % 2 == 0 ? side : std::min<int64_t>(side, 12);
+        const Cube cube = {Pick(index, 3, extent), side - 1 - Pick(index, 4, extent),
+                           Pick(index, 5, extent)};
+        set.Add(CodeOf(cube));
+        for (const Cube& other : Around(cube, side)) {
+          expected.insert(CodeOf(other));
+          for (const Cube& farther : Around(other, side)) near.push_back(farther);
+        }
+      }
+      set.Widen();
+      for (const Cube& cube : near) {
+        ASSERT_EQ(set.Has(CodeOf(cube)), expected.contains(CodeOf(cube))) << bits << " " << size;
+      }
+      EXPECT_FALSE(size == 0 && set.Has(0));
+    }
+  }
+}
+
+TEST(CubeIndex, GivesWhatWasAddedOfEachCube) {
+  std::vector<NodeOrder::Coarse> places;
+  for (int32_t place = 0; place < 500; ++place) {
+    const auto index = static_cast<uint64_t>(place);
+    places.push_back({CodeOf({Pick(index, 0, 64), Pick(index, 1, 64), Pick(index, 2, 64)}), place});
+  }
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
+    return a.code != b.code ? a.code < b.code : a.place < b.place;
+  });
+  constexpr int kBits = 3;
+  CubeIndex index(places, kBits);
+  const auto expect = [&](int32_t every) {
+    for (uint64_t cube = 0; cube < 512; ++cube) {
+      std::vector<int32_t> expected;
+      for (const auto& [code, place] : places) {
+        if (code >> (3 * kBits) == cube && place % every == 0) expected.push_back(place);
+      }
+      const std::span<const int32_t> found = index.In(cube);
+      ASSERT_EQ(std::vector<int32_t>(found.begin(), found.end()), expected) << cube;
+    }
+    EXPECT_TRUE(index.In(1u << 20).empty());
+  };
+  expect(1);
+  index.Clear();
+  for (const auto& [code, place] : places) {
+    if (place % 3 == 0) index.Add(code, place);
+  }
+  expect(3);
+}
+
+}  // namespace
+}  // namespace cleave
