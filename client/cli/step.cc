@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <memory>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/console.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/interrupt.h"
 #include "client/cli/number_check.h"
 #include "client/cli/program.h"
 #include "client/cli/server_access.h"
@@ -30,7 +33,14 @@ absl::Status Step(Program& program, const Options& options) {
   const int64_t limit = std::max<int64_t>(1, client->server().limits().max_step_frames());
   const auto budget = std::chrono::milliseconds(static_cast<int64_t>(options.seconds * 1000));
   int64_t done = 0;
-  while (done < options.frames && !program.interrupt.stop().requested()) {
+  // As `run` takes signals: the first pauses behind the frame in work, a second gives that up.
+  std::atomic<bool> interrupted{false};
+  const ScopedHandler handler(program.interrupt, [&](int signal, int count) {
+    interrupted = true;
+    const auto paused = client->PauseSession(name, signal == SIGTERM || count > 1);
+    if (!paused.ok() && !absl::IsFailedPrecondition(paused.status())) PrintError(paused.status());
+  });
+  while (done < options.frames && !interrupted && !program.interrupt.stop().requested()) {
     const auto frames = static_cast<uint32_t>(std::min(limit, options.frames - done));
     CLEAVE_ASSIGN_OR_RETURN(
         const v1::StepSessionResponse response,
@@ -40,7 +50,7 @@ absl::Status Step(Program& program, const Options& options) {
     if (session.state() == v1::SESSION_STATE_FAILED)
       return SimulationFailed(absl::StrCat(name, " failed after frame ", session.head_frame(), ": ",
                                            session.error().message()));
-    if (response.deadline_reached() || response.frames_done() == 0)
+    if (!interrupted && (response.deadline_reached() || response.frames_done() == 0))
       return absl::DeadlineExceededError(absl::StrCat(
           name, ": ", done, " of ", options.frames,
           " frames were done within the time; it stands at ", "frame ", session.head_frame()));

@@ -1,8 +1,10 @@
 """Verbs that ask a server: submit, step, watch, list, plan, cancel, info."""
 
 import json
+import signal
+import subprocess
 
-from cleave_cli import BLOCK, CliTest, cleave, main
+from cleave_cli import BLOCK, CLEAVE, SECONDS, CliTest, cleave, environment, main
 
 
 class Server(CliTest):
@@ -35,6 +37,23 @@ class Server(CliTest):
         info = json.loads(output)
         self.assertEqual(info["api_versions"], ["cleave.v1"])
         self.assertIn("region", info["features"])
+
+    def test_interrupted_step_pauses_its_session_and_tells_how_far_it_came(self):
+        scene = self.scene(BLOCK % 2)
+        self.assertEqual(self.ask("submit", scene, "--idle", "--session", "block")[0], 0)
+        stepping = subprocess.Popen([CLEAVE, "step", "block", "-n", "9999", "--server", self.address],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                    env=environment(), start_new_session=True)
+        self.addCleanup(stepping.kill)
+        state = {}
+        while int(state.get("head_frame", 0)) < 2:
+            state = json.loads(self.ask("list", "--json")[1])
+        stepping.send_signal(signal.SIGINT)
+        output, errors = stepping.communicate(timeout=SECONDS)
+        self.assertEqual(stepping.returncode, 130, errors)
+        self.assertRegex(errors, "stopped after [0-9]+ frames")
+        self.assertIn("idle", output)
+        self.assertEqual(json.loads(self.ask("list", "--json")[1])["state"], "SESSION_STATE_IDLE")
 
     def test_viewers_choose_among_the_accuracies_that_a_session_keeps(self):
         scene = self.scene(BLOCK % 6)
