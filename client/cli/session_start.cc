@@ -1,5 +1,6 @@
 #include "client/cli/session_start.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "absl/strings/ascii.h"

@@ -1,6 +1,7 @@
 #include "client/cpp/retry.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <thread>
 
 #include "absl/strings/str_cat.h"

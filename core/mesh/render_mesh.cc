@@ -1,5 +1,6 @@
 #include "core/mesh/render_mesh.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <unordered_map>

@@ -1,5 +1,6 @@
 #include "core/scene/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>

@@ -1,6 +1,7 @@
 #include "core/stream/frame_motion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "core/base/bytes.h"

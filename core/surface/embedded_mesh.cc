@@ -1,6 +1,7 @@
 #include "core/surface/embedded_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/surface/parted_edges.h"

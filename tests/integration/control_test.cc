@@ -10,6 +10,7 @@
 #include <chrono>
 #include <future>
 
+#include "absl/strings/str_cat.h"
 #include "client/cpp/client.h"
 #include "client/cpp/frame_stream.h"
 #include "client/cpp/rpc_error.h"

@@ -1,6 +1,7 @@
 #include "tests/metrics/crack_surface.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

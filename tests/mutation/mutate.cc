@@ -1,5 +1,6 @@
 #include "tests/mutation/mutate.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

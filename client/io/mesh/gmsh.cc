@@ -1,5 +1,6 @@
 #include "client/io/mesh/gmsh.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>

@@ -1,6 +1,7 @@
 #include <google/protobuf/descriptor.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "tests/bench/stream/break_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+
 #include "absl/strings/cord.h"
 #include "google/rpc/error_details.pb.h"
 

@@ -1,6 +1,7 @@
 #ifndef CLEAVE_TESTS_UNIT_CORE_CONTACT_TEST_SURFACES_H_
 #define CLEAVE_TESTS_UNIT_CORE_CONTACT_TEST_SURFACES_H_
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

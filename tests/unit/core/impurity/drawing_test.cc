@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "absl/strings/string_view.h"
 #include "core/impurity/bake.h"
 #include "core/mesh/incidence.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 
 #include "core/material/corotated_linear.h"
 #include "core/material/invertible_neo_hookean.h"

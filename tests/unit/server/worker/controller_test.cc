@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <memory>
+
 #include "server/control/message_socket.h"
 #include "tests/unit/temporary_directory.h"
 

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <webp/demux.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
