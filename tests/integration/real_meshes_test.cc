@@ -20,9 +20,11 @@ namespace {
 
 constexpr int64_t kMessageLimit = 4 << 20;
 
-// A scene that holds the body at one end of its longest side and pulls the other by `stretch` of
-// that side within the run.
-v1::Scene PulledApart(const TetMesh& mesh, double stretch) {
+struct Extent {
+  Vec3 low, high;
+  size_t longest;  // axis
+};
+Extent ExtentOf(const TetMesh& mesh) {
   Vec3 low = mesh.rest_positions.front(), high = low;
   for (const Vec3& x : mesh.rest_positions) {
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -34,6 +36,13 @@ v1::Scene PulledApart(const TetMesh& mesh, double stretch) {
   for (size_t axis = 1; axis < 3; ++axis) {
     if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
   }
+  return {low, high, longest};
+}
+
+// A scene that holds the body at one end of its longest side and pulls the other by `stretch` of
+// that side within the run.
+v1::Scene PulledApart(const TetMesh& mesh, double stretch) {
+  const auto [low, high, longest] = ExtentOf(mesh);
   const double length = high[longest] - low[longest];
 
   v1::Scene scene;
@@ -72,12 +81,11 @@ v1::Scene PulledApart(const TetMesh& mesh, double stretch) {
 std::string PathOf(const std::string& name) { return std::string(CLEAVE_MESHES_DIR) + "/" + name; }
 
 // Sends mesh and scene, and returns what the session is after `frames` frames.
-v1::Session RunOn(Client& client, const TetMesh& mesh, const std::string& id, double stretch,
+v1::Session RunOn(Client& client, const TetMesh& mesh, const std::string& id, v1::Scene scene,
                   int64_t frames) {
   const absl::StatusOr<UploadedMesh> uploaded = UploadMesh(client, mesh, {});
   EXPECT_TRUE(uploaded.ok()) << uploaded.status();
   if (!uploaded.ok()) return {};
-  v1::Scene scene = PulledApart(mesh, stretch);
   scene.mutable_mesh()->set_asset(uploaded->asset);
   Create(client, id, scene);
   v1::RunGoal goal;
@@ -109,7 +117,8 @@ TEST(RealMeshes, EveryFileRunsOrIsRefusedWithItsName) {
       continue;
     }
     const v1::Session session =
-        RunOn(*client, *mesh, "mesh-" + std::to_string(ran), /*stretch=*/0.001, /*frames=*/1);
+        RunOn(*client, *mesh, "mesh-" + std::to_string(ran), PulledApart(*mesh, /*stretch=*/0.001),
+              /*frames=*/1);
     EXPECT_EQ(session.state(), v1::SESSION_STATE_IDLE);
     EXPECT_EQ(session.head_frame(), 1);
     ++ran;
@@ -118,15 +127,35 @@ TEST(RealMeshes, EveryFileRunsOrIsRefusedWithItsName) {
   EXPECT_GE(refused, 5);
 }
 
+// Cut across its middle but for a strip, so that it breaks in one place and in a few passes.
 TEST(RealMeshes, ASlenderRodPulledApartBreaks) {
   TestServer server;
   const std::unique_ptr<Client> client = server.Connect();
   const absl::StatusOr<TetMesh> mesh = ReadMeshFile(PathOf("tet/rod300x33.msh"));
   ASSERT_TRUE(mesh.ok()) << mesh.status();
-  const v1::Session session = RunOn(*client, *mesh, "rod", /*stretch=*/0.08, /*frames=*/4);
+  const auto [low, high, along] = ExtentOf(*mesh);
+  const size_t across = (along + 1) % 3;
+  const double middle = 0.5 * (low[along] + high[along]);
+  const double strip = low[across] + 0.15 * (high[across] - low[across]);
+  int64_t cut = 0;
+  for (const auto& [a, b] : BuildIncidence(*mesh).edges) {
+    const Vec3 &x = mesh->rest_positions[static_cast<size_t>(a)],
+               &y = mesh->rest_positions[static_cast<size_t>(b)];
+    cut += (x[along] - middle) * (y[along] - middle) < 0 && std::max(x[across], y[across]) > strip;
+  }
+
+  v1::Scene scene = PulledApart(*mesh, /*stretch=*/0.03);
+  v1::Weakening& weakening = *scene.add_weakenings();
+  weakening.set_factor(0);
+  v1::BoxSelector& plane = *weakening.mutable_box();
+  for (size_t axis = 0; axis < 3; ++axis) {
+    plane.add_min(axis == along ? middle - 1e-6 : axis == across ? strip : low[axis]);
+    plane.add_max(axis == along ? middle + 1e-6 : high[axis]);
+  }
+  const v1::Session session = RunOn(*client, *mesh, "rod", scene, /*frames=*/4);
   EXPECT_EQ(session.head_frame(), 4);
   EXPECT_GE(session.progress().fragments(), 2);
-  EXPECT_GT(session.progress().broken_edges(), 10);
+  EXPECT_GT(session.progress().broken_edges(), cut + 10);
 }
 
 TEST(RealMeshes, AMeshBeyondTheMessageLimitStreamsThroughTheGateway) {
@@ -136,7 +165,8 @@ TEST(RealMeshes, AMeshBeyondTheMessageLimitStreamsThroughTheGateway) {
   const absl::StatusOr<TetMesh> mesh = ReadMeshFile(PathOf("tet/spot_276k_v41bin.msh.zst"));
   ASSERT_TRUE(mesh.ok()) << mesh.status();
   ASSERT_GT(mesh->tet_count() * 16, kMessageLimit);
-  const v1::Session session = RunOn(*client, *mesh, "spot", /*stretch=*/0.001, /*frames=*/3);
+  const v1::Session session =
+      RunOn(*client, *mesh, "spot", PulledApart(*mesh, /*stretch=*/0.001), /*frames=*/3);
   EXPECT_EQ(session.head_frame(), 3);
 }
 
@@ -165,7 +195,8 @@ TEST(RealMeshes, SurfacesBecomeBodiesThatBreak) {
       if (layout != MeshLayout::kUnstructured) continue;
       std::string id = name;
       std::replace(id.begin(), id.end(), '_', '-');
-      const v1::Session session = RunOn(*client, body->mesh, id, 0.3, 3);
+      const v1::Session session =
+          RunOn(*client, body->mesh, id, PulledApart(body->mesh, /*stretch=*/0.3), /*frames=*/3);
       EXPECT_GT(session.progress().broken_edges(), 0);
     }
   }
