@@ -1,6 +1,7 @@
 #include "tests/scenes/branch.h"
 
 #include <numbers>
+#include <utility>
 
 #include "core/base/status.h"
 #include "tests/metrics/crack_surface.h"
@@ -79,12 +80,19 @@ void LetFall(Scene& scene) {
 }  // namespace
 
 absl::StatusOr<Demonstration> MakeBranch(const Setting& setting) {
+  const bool falls = setting.variant.ends_with("-fall");
+  const double cell_size = (falls ? 0.018 : 0.0115) * setting.coarseness;
+  CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh,
+                          Branch(kShape, {setting.layout, cell_size, 0.2, setting.seed}));
+  return MakeBranchOf(std::move(mesh), cell_size, setting);
+}
+
+Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting) {
   const bool damp = setting.variant.starts_with("damp");
   const bool falls = setting.variant.ends_with("-fall");
   Demonstration made;
-  made.cell_size = (falls ? 0.018 : 0.0115) * setting.coarseness;
-  CLEAVE_ASSIGN_OR_RETURN(made.mesh,
-                          Branch(kShape, {setting.layout, made.cell_size, 0.2, setting.seed}));
+  made.mesh = std::move(mesh);
+  made.cell_size = cell_size;
   made.fibres.assign(made.mesh.tets.size(), Vec3{0, 0, 1});
   made.rest_length = kShape.length - 2 * kGrip;
 

@@ -12,6 +12,11 @@ namespace cleave {
 // and "damp-iso", without fibres; "dry-fall" and "damp-fall", of softer wood, whose tip is let go
 // when it is torn off and falls across the edge of a stone.
 absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
+// The same of another body along z from the origin to kBranchLength, about kBranchDiameter thick,
+// of cells of that size (m); the setting's layout and coarseness count for nothing.
+Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting);
+inline constexpr double kBranchLength = 0.6;      // m
+inline constexpr double kBranchDiameter = 0.086;  // m, the mean
 
 // splinter_length: axial extent of a fracture over the diameter, the mean over fractures by area.
 Metrics MeasureBranch(const Demonstration& demonstration, const Incidence& incidence,
