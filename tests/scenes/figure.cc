@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/base/status.h"
 #include "tests/metrics/pieces.h"
@@ -59,13 +60,12 @@ void AddProngs(Scene& scene) {
 
 }  // namespace
 
-absl::StatusOr<Demonstration> MakeFigure(const Setting& setting) {
+Demonstration MakeRingedPlaster(TetMesh mesh, double cell_size, const ImpuritySource& ring,
+                                const Setting& setting) {
   Demonstration made;
-  made.cell_size = 0.02 * setting.coarseness;
-  CLEAVE_ASSIGN_OR_RETURN(made.mesh,
-                          Capsules(Limbs(), {setting.layout, made.cell_size, 0.2, setting.seed}));
+  made.mesh = std::move(mesh);
+  made.cell_size = cell_size;
   Scene& scene = made.scene;
-  scene.name = "figure";
   scene.seed = setting.seed;
   Material plaster;
   plaster.name = "plaster";
@@ -75,11 +75,6 @@ absl::StatusOr<Demonstration> MakeFigure(const Setting& setting) {
   plaster.tensile_strength = 3e6;
   scene.materials.push_back(plaster);
 
-  BandField ring;
-  ring.center = {0, 0, kShoulder};
-  ring.axis = {1, 0, 0};
-  ring.position = kRing;
-  ring.width = kRingWidth;
   ImpurityLayer layer;
   layer.name = "ring";
   layer.source = ring;
@@ -97,6 +92,21 @@ absl::StatusOr<Demonstration> MakeFigure(const Setting& setting) {
     used.potency = 10;
     used.map = MapOf(Shuffled(made.in_map, setting.seed));
   }
+  return made;
+}
+
+absl::StatusOr<Demonstration> MakeFigure(const Setting& setting) {
+  const double cell_size = 0.02 * setting.coarseness;
+  CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh,
+                          Capsules(Limbs(), {setting.layout, cell_size, 0.2, setting.seed}));
+  BandField ring;
+  ring.center = {0, 0, kShoulder};
+  ring.axis = {1, 0, 0};
+  ring.position = kRing;
+  ring.width = kRingWidth;
+  Demonstration made = MakeRingedPlaster(std::move(mesh), cell_size, ring, setting);
+  Scene& scene = made.scene;
+  scene.name = "figure";
 
   made.grip = NodesWhere(made.mesh,
                          [](const Vec3& x) { return x[2] < 0 || x[2] > kHead || x[0] < -kReach; });

@@ -18,6 +18,10 @@ namespace cleave {
 // comparison; "shuffled", the ring's potencies dealt out to nodes.
 absl::StatusOr<Demonstration> MakeFigure(const Setting& setting);
 
+// Any body of that plaster with such a ring, as the variant has it; nothing holds or strikes it.
+Demonstration MakeRingedPlaster(TetMesh mesh, double cell_size, const ImpuritySource& ring,
+                                const Setting& setting);
+
 // arm_share: of the rest volume, the piece that holds most nodes of the struck fist.
 Metrics MeasureFigure(const Demonstration& demonstration, const Incidence& incidence,
                       const Run& run);

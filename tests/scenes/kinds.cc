@@ -125,7 +125,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
       {"pizza",
        "A pizza, a slice pulled out",
        "Figs. 1 and 6",
-       {"cut", "uncut"},
+       {"cut", "uncut", "shuffled"},
        MakePizza,
        MeasurePizza,
        PizzaCriteria(),

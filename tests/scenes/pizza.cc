@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/base/status.h"
 #include "core/mesh/procedural.h"
@@ -48,27 +49,34 @@ int SliceOf(const Vec3& x) {
 
 // What the wheel left in the dough before the cheese flowed together over it: eight radii from the
 // rim to the middle, from below.
-Strokes Cuts() {
+Strokes Cuts(double from, double to, double depth) {
   Strokes cuts;
   for (int cut = 0; cut < kSlices; ++cut) {
     const double c = std::cos(CutAngle(cut)), s = std::sin(CutAngle(cut));
-    cuts.curves.push_back({{{1.1 * kRadius * c, 1.1 * kRadius * s, 0}, {0, 0, 0}}});
+    cuts.curves.push_back({{{from * c, from * s, 0}, {to * c, to * s, 0}}});
   }
   cuts.direction = {0, 0, 1};
-  cuts.depth = kDepth;
+  cuts.depth = depth;
   return cuts;
 }
 
 }  // namespace
 
 absl::StatusOr<Demonstration> MakePizza(const Setting& setting) {
-  Demonstration made;
-  made.cell_size = 0.0085 * setting.coarseness;
+  const double cell_size = 0.0085 * setting.coarseness;
   DiscMesh disc;
   disc.radius = kRadius;
   disc.thickness = kThickness;
-  disc.resolution = {setting.layout, made.cell_size, 0.2, setting.seed};
-  CLEAVE_ASSIGN_OR_RETURN(made.mesh, BuildMesh(disc));
+  disc.resolution = {setting.layout, cell_size, 0.2, setting.seed};
+  CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh, BuildMesh(disc));
+  return MakePizzaOf(std::move(mesh), cell_size, std::nullopt, setting);
+}
+
+Demonstration MakePizzaOf(TetMesh mesh, double cell_size, std::optional<double> crust_depth,
+                          const Setting& setting) {
+  Demonstration made;
+  made.mesh = std::move(mesh);
+  made.cell_size = cell_size;
   made.mesh.regions.push_back({0, "dough"});
   NameRegion(made.mesh, kCheeseRegion, "cheese",
              [](const Vec3& x) { return x[2] > kCheese && RadiusOf(x) < kCrust; });
@@ -92,14 +100,20 @@ absl::StatusOr<Demonstration> MakePizza(const Setting& setting) {
   cheese.tensile_strength = 3e4;
   cheese.plasticity = Plasticity{.yield_stress = 1e3, .hardening = 1e3, .failure_strain = 1.5};
   scene.materials.push_back(cheese);
-  if (setting.variant == "cut") {
+  if (setting.variant != "uncut") {
     ImpurityLayer layer;
     layer.name = "cuts";
-    layer.source = Cuts();
+    layer.source = Cuts(1.1 * kRadius, 0, kDepth);
     layer.weakening = 0.3;
     Impurities impurities;
     impurities.layers.push_back(layer);
+    if (crust_depth) {
+      layer.name = "cuts of the crust";
+      layer.source = Cuts(1.1 * kRadius, kCrust, *crust_depth);
+      impurities.layers.push_back(layer);
+    }
     scene.impurities = impurities;
+    if (setting.variant == "shuffled") DealOut(scene, MarkedNodes(scene, made.mesh), setting.seed);
   }
 
   // A hand takes the slice by its crust, away from the cuts, lifts it and pulls it out; what lies
