@@ -73,11 +73,14 @@ class FrameEncoder {
   bool exact() const { return header_.predictor_id == kPredictorExact; }
   absl::Status CheckFrame(const Frame& frame) const;
   absl::Status Quantise(const std::vector<Vec3>& positions);
+  // In temporal_encoder.cc.
+  absl::Status QuantiseOnGrid(const std::vector<Vec3>& positions);
+  void AppendPositions(bool key, FrameHeader& header, std::string& body) const;
+
   void AppendCheckpoint(std::span<const int32_t> edges, FrameHeader& header,
                         std::string& body) const;
   void AppendTopology(SectionType type, std::span<const int32_t> edges, FrameHeader& header,
                       std::string& body) const;
-  void AppendPositions(bool key, FrameHeader& header, std::string& body) const;
 
   StreamHeader header_;
   std::string header_bytes_;
