@@ -170,9 +170,15 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
       for (int64_t at = begin; at < end; ++at) TouchAround(ends[static_cast<size_t>(at)]);
     });
     for (const int32_t end : ends) lost_edges_[static_cast<size_t>(end)] = 0;
-    if (pieces_.Split(graph_, fresh)) TouchInSpace();
+    bool splits = false;
+    const auto split = [&] { splits = pieces_.Split(graph_, fresh); };
+    const auto show = [&] { fresh_ = visible_->Break(graph_, fresh); };
+    // At the same time: much of either is one step after the other.
+    ParallelFor(visible_ ? 2 : 1, 1, [&](int64_t begin, int64_t end) {
+      for (int64_t at = begin; at < end; ++at) at == 0 ? split() : show();
+    });
+    if (splits) TouchInSpace();
     if (visible_) {
-      fresh_ = visible_->Break(graph_, fresh);
       FindLeaders();
       ShowInCubes(order, fresh_);
       TouchRoundFresh(order);

@@ -112,7 +112,7 @@ void Stencils::TouchRoundFresh(const NodeOrder& order) {
 // to it, what the fresh ones are near enough to.
 void Stencils::TouchRing(int32_t between) {
   const std::span<const int32_t> ring = graph_.Neighbours(between);
-  std::array<int32_t, 64> fresh;
+  std::array<int32_t, 64> fresh{};
   size_t count = 0;
   for (const int32_t place : ring) {
     if (place < 0 || (marks_[static_cast<size_t>(place)] & kFresh) == 0) continue;
