@@ -78,6 +78,9 @@ class EmbeddedMesh {
   };
   using Triple = DividedMesh::Triple;
 
+  static bool AreThree(const std::array<int32_t, 3>& nodes) {
+    return nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0];
+  }
   void BindTriangles();
   int32_t NodeAt(size_t triangle, size_t k) const;
   size_t EdgeAt(size_t triangle, size_t k) const;
