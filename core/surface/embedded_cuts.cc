@@ -1,6 +1,7 @@
 // What EmbeddedMesh draws of triangles and tets that are cut.
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "core/surface/embedded_mesh.h"

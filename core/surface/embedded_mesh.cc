@@ -1,7 +1,6 @@
 #include "core/surface/embedded_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/surface/parted_edges.h"
