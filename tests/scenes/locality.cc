@@ -15,8 +15,8 @@ constexpr double kLength = 0.6;  // m
 constexpr double kWidth = 0.3;   // m
 constexpr double kGap = 0.2;     // m between the slabs
 constexpr double kStretch = 0.09;
-// Slow against the wave that the pull sends, 20 ms from end to end; and steps in which a wave crosses
-// two cells of full size, for what an implicit step is told of falls off over that length.
+// Slow against the wave that the pull sends, 20 ms from end to end; and steps in which a wave
+// crosses two cells of full size, for what an implicit step is told of falls off over that length.
 constexpr double kSeconds = 0.12;
 constexpr int64_t kFrames = 48;
 
