@@ -37,8 +37,12 @@ constexpr SurfaceId Make(Kind kind, uint64_t part, uint64_t low) {
   return kind << 56 | part << 8 | low;
 }
 constexpr Kind KindOf(SurfaceId id) { return static_cast<Kind>(id >> 56); }
-constexpr uint64_t PartOf(SurfaceId id) { return id >> 8 & ((uint64_t{1} << 48) - 1); }
+constexpr uint64_t PartOf(SurfaceId id) { return id >> 8 & ((uint64_t{1} << 36) - 1); }
 constexpr uint64_t LowOf(SurfaceId id) { return id & 0xFF; }
+
+// Of a point that stands for another fan of triangles round the same point (fans.h), from 1 on.
+inline constexpr uint64_t kMaxFan = 0xFFF;
+constexpr SurfaceId OfFan(SurfaceId id, uint64_t fan) { return id | fan << 44; }
 
 // Points. `first` is the first node on the copy's side, by its place in the edge, in the face as
 // the lower of its tets lists it, or in the tet. A face is 4 * tet + face of its lower tet.

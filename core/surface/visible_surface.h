@@ -29,8 +29,8 @@ struct SurfaceOptions {
 //
 // Source: method note, section 8. The pinch edges that it names (four crack faces round a segment
 // whose ends stay whole) are resolved by a point of its own on each side. Crack faces may still
-// touch in a point, and where the mesh itself is joined only by a node or an edge, so is the
-// surface.
+// touch in a point, which fans.h parts, and where the mesh itself is joined only by a node or an
+// edge, so is the surface.
 //
 // Breaking makes anew only what is round edges that some tet has come to part; all else stays in
 // its place. Not thread-safe.

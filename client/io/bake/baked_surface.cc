@@ -12,6 +12,7 @@
 #include "core/mesh/tet_geometry.h"
 #include "core/surface/embedded_mesh.h"
 #include "core/surface/faces.h"
+#include "core/surface/fans.h"
 #include "core/surface/visible_surface.h"
 
 namespace cleave {
@@ -73,6 +74,7 @@ BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const 
   } else {
     surface.topology = ExtractSurface(mesh, incidence, faces, broken_edges, SurfaceOptions{});
   }
+  SeparateFans(surface.topology);
   surface.pieces = FindPieces(mesh, pieces);
   const SurfaceTopology& topology = surface.topology;
   surface.point_pieces.assign(topology.points.size(), -1);

@@ -15,6 +15,7 @@
 #include "core/base/faults.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/surface/fans.h"
 
 namespace cleave {
 namespace {
@@ -133,9 +134,12 @@ void SurfaceSequence::Follow(const Frame& frame) {
   pieces_->Break(edges);
   if (embedded_) {
     embedded_->Break(edges, *pieces_);
+    topology_ = embedded_->topology();
   } else {
     surface_->Break(edges);
+    topology_ = surface_->topology();
   }
+  SeparateFans(topology_);
   is_stale_ = true;
 }
 

@@ -57,9 +57,8 @@ class SurfaceSequence {
   // before, 0 in the first.
   // Damages are means over all tets at the nodes on a point's side; potencies are interpolated.
   const ShownSurface& surface() const { return shown_; }
-  const SurfaceTopology& topology() const {
-    return embedded_ ? embedded_->topology() : surface_->topology();
-  }
+  // Its sheets share no point where they only touch (fans.h).
+  const SurfaceTopology& topology() const { return topology_; }
   // Where there is a render mesh: how it is bound to the body. Else null.
   const EmbeddedMesh* embedded() const { return embedded_ ? &*embedded_ : nullptr; }
   const std::vector<int32_t>& node_pieces() const { return node_pieces_; }  // -1: of no tet
@@ -102,6 +101,7 @@ class SurfaceSequence {
   std::vector<int32_t> broken_edges_;
   std::optional<VisibleSurface> surface_;  // or, where there is a render mesh,
   std::optional<EmbeddedMesh> embedded_;
+  SurfaceTopology topology_;  // of either
   std::optional<NamedPieces> pieces_;
   std::vector<int32_t> node_pieces_;
   ShownSurface shown_;
