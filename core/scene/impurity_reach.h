@@ -18,10 +18,10 @@ namespace cleave {
 std::vector<std::array<int32_t, 2>> EdgesOfTets(const TetMesh& mesh);
 
 // Names what of layer `k` is nowhere on the body, as of something in another unit or finer than
-// the mesh: every stroke that crosses no edge and whose groove holds none; a pattern, bands, pockets or a painted surface where
-// none of it meets the body; and any of them where no node that it reaches is in the layer's set.
-// `edges` are those of the mesh. Preconditions: CheckImpurities finds no error in the layer; the
-// mesh passed CheckMesh.
+// the mesh: every stroke that crosses no edge and whose groove holds none; a pattern, bands,
+// pockets or a painted surface where none of it meets the body; and any of them where no node that
+// it reaches is in the layer's set. `edges` are those of the mesh. Preconditions: CheckImpurities
+// finds no error in the layer; the mesh passed CheckMesh.
 void CheckReach(const Scene& scene, size_t k, const TetMesh& mesh,
                 std::span<const std::array<int32_t, 2>> edges, Faults& faults);
 
