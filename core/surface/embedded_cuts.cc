@@ -1,6 +1,7 @@
 // What EmbeddedMesh draws of triangles and tets that are cut.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
