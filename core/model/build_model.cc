@@ -352,6 +352,9 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
   // Gravity.
   model.gravity = scene.gravity;
 
+  // Rayleigh damping.
+  if (IsDamped(scene)) model.damping = scene.damping;
+
   // Prescribed motions.
   for (const Motion& motion : scene.motions) {
     PrescribedMotion part;

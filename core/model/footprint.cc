@@ -71,14 +71,19 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   add("elasticity",
       ElasticTermBytes(precision, elastic_tets, uniform) + (more_kinds > 0 ? tets * kInt : 0));
   add("state", nodes * (kDouble + 4 * kNodal + kVec3));  // masses, now and before, positions
-  add("stiffness matrix", 18 * (edges + 1) * static_cast<int64_t>(sizeof(float)) +
-                              2 * (nodes + 1) * kInt + 3 * edges * kInt);
+  const int64_t matrix_bytes = 18 * (edges + 1) * static_cast<int64_t>(sizeof(float)) +
+                               2 * (nodes + 1) * kInt + 3 * edges * kInt;
+  add("stiffness matrix", matrix_bytes);
   // In float the vectors of linear solves take half, but there is one more.
   add("solver",
       nodes * (24 - (precision == Precision::kFloat ? 3 : 0)) * kNodal / 2 + nodes * kDouble);
 
   // What the scene adds.
   if (scene.gravity) add("gravity", 0);
+  if (IsDamped(scene)) {
+    add("damping", nodes * (2 * kDouble + 2 * kNodal) +  // rates, matrix diagonal, forces
+                       (scene.damping->stiffness_coefficient > 0 ? matrix_bytes : 0));
+  }
   if (!scene.motions.empty()) {
     int64_t bytes = nodes * 2 * kNodal;
     for (const Motion& motion : scene.motions)

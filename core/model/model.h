@@ -78,6 +78,7 @@ struct Model {
   std::vector<std::unique_ptr<NodeTerm>> node_terms;
   const ColliderTerm* colliders = nullptr;  // one of the node terms, where the scene has any
   std::optional<Vec3> gravity;              // m/s^2
+  std::optional<Damping> damping;           // of the body, by a coefficient above 0
   std::vector<PrescribedMotion> motions;
   std::vector<ReleaseRule> releases;  // of motions and loads
   std::optional<FracturePart> fracture;

@@ -65,6 +65,8 @@ inline constexpr double kMaxSleepSeconds = 3600;  // longer, leave sleep out
 
 inline constexpr double kMaxStepSeconds = 10;      // beyond it backward Euler only damps
 inline constexpr double kCoarseStepSeconds = 0.1;  // a warning from here on
+inline constexpr double kMaxMassDamping = 1e6;  // 1/s; nothing moves on for more than a microsecond
+inline constexpr double kMaxStiffnessDamping = 100;  // s; what takes minutes to give is a fluid
 inline constexpr double kMinFramesPerSecond = 1e-3;
 inline constexpr double kMaxFramesPerSecond = 1e9;
 inline constexpr int64_t kMaxFrames = 10'000'000;

@@ -337,6 +337,17 @@ struct Timing {
   int32_t steps_per_frame = 4;
 };
 
+// Rayleigh damping of the body: forces -(a M + b K) v of its mass M and its elastic stiffness K,
+// that of the start of the step without negative eigenvalues, as it has yielded and broken so far
+// (method note, section 7). A vibration of angular frequency w decays at the damping ratio
+// a / (2 w) + b w / 2, besides what backward Euler takes. b damps no translation, and a spin w at
+// the rate b w^2; a drags the body against the scene's coordinates. What breaks edges is the
+// elastic stress alone.
+struct Damping {
+  double mass_coefficient = 0;       // a, 1/s
+  double stiffness_coefficient = 0;  // b, s
+};
+
 // In what elements and linear solves calculate. Displacements, velocities, nodal forces, sums of
 // energies and what the solver decides by them are double in either.
 enum class Precision {
@@ -386,10 +397,17 @@ struct Scene {
   std::optional<Sleep> sleep;                   // absent: nothing sleeps
   std::optional<RenderMeshSource> render_mesh;  // absent: the body's own surface is shown
   Timing timing;
+  std::optional<Damping> damping;  // absent: backward Euler's alone
   Quality quality;
   Output output;
   uint32_t seed = 0;
 };
+
+// Whether anything damps motion besides backward Euler.
+inline bool IsDamped(const Scene& scene) {
+  return scene.damping.has_value() &&
+         (scene.damping->mass_coefficient > 0 || scene.damping->stiffness_coefficient > 0);
+}
 
 // Whether load cycles weaken anything.
 inline bool Tires(const Scene& scene) {

@@ -177,6 +177,13 @@ void CheckSettings(const Scene& scene, Faults& faults, Checker& check) {
                    absl::StrCat("makes steps of ", dt, " s: motion will be strongly damped"));
   }
 
+  if (scene.damping.has_value()) {
+    check.Within("damping.mass_coefficient", scene.damping->mass_coefficient, 0,
+                 limits::kMaxMassDamping);
+    check.Within("damping.stiffness_coefficient", scene.damping->stiffness_coefficient, 0,
+                 limits::kMaxStiffnessDamping);
+  }
+
   const Quality& quality = scene.quality;
   check.Count("quality.newton_iterations", quality.newton_iterations, 1,
               limits::kMaxNewtonIterations);

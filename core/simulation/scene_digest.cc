@@ -333,6 +333,12 @@ uint64_t DigestScene(const Scene& scene, const TetMesh& mesh) {
     out.Put(scene.sleep->speed);
     out.Put(scene.sleep->time);
   }
+  if (IsDamped(scene)) {
+    // So that these bytes are of no other part.
+    PutText("damping", out);
+    out.Put(scene.damping->mass_coefficient);
+    out.Put(scene.damping->stiffness_coefficient);
+  }
 
   StateHash hash;
   Update(mesh.rest_positions, hash);

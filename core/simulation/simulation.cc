@@ -74,6 +74,7 @@ class BodySimulation final : public Simulation {
     energies_.plastic_work += steps.plastic_work;
     energies_.friction_dissipation += steps.friction_dissipation;
     energies_.integration_dissipation += steps.integration_dissipation;
+    damping_dissipation_ += steps.damping_dissipation;
     PublishPositions();
 
     FrameReport report;
@@ -100,6 +101,7 @@ class BodySimulation final : public Simulation {
     report.plastic_work = energies_.plastic_work;
     report.contact_energy = steps.contact_energy;
     report.friction_dissipation = energies_.friction_dissipation;
+    report.damping_dissipation = damping_dissipation_;
     report.integration_dissipation = energies_.integration_dissipation;
     report.fragments = fragments_;
     if (const Resting* resting = stepper_.resting())
@@ -147,6 +149,7 @@ class BodySimulation final : public Simulation {
     out.Put(digest_);
     out.Put(frame_);
     out.Put(energies_);
+    if (model_.damping) out.Put(damping_dissipation_);
     out.PutVector(state_.displacements);
     out.PutVector(state_.velocities);
     if (!model_.releases.empty()) out.PutVector(state_.released);
@@ -172,6 +175,7 @@ class BodySimulation final : public Simulation {
       return absl::FailedPreconditionError("the saved state is of another scene or mesh");
     const auto frame = in.Get<int64_t>();
     const auto energies = in.Get<Energies>();
+    const double damping_dissipation = model_.damping ? in.Get<double>() : 0;
     State state;
     state.displacements = in.GetVector<Double4>();
     state.velocities = in.GetVector<Double4>();
@@ -196,6 +200,7 @@ class BodySimulation final : public Simulation {
     }
     frame_ = frame;
     energies_ = energies;
+    damping_dissipation_ = damping_dissipation;
     state_ = std::move(state);
     PublishPositions();
     PublishBroken();
@@ -271,6 +276,7 @@ class BodySimulation final : public Simulation {
   State state_;
   int64_t frame_ = 0;
   Energies energies_;
+  double damping_dissipation_ = 0;  // J, since the start
   int64_t fragments_ = 0;
   std::optional<NamedPieces> pieces_;  // where the body can break
   std::vector<Vec3> positions_;

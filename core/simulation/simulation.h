@@ -44,8 +44,9 @@ struct FrameReport {
   double plastic_work = 0;          // J, elastic energy lost to plastic flow, since the start
   double contact_energy = 0;        // J, stored where bodies touch, at the end
   double friction_dissipation = 0;  // J, since the start
+  double damping_dissipation = 0;   // J, by Rayleigh damping, since the start
   // J, what time integration took out, since the start. External work is the change of kinetic,
-  // elastic and contact energy, and what fracture, plastic flow, friction and integration
+  // elastic and contact energy, and what fracture, plastic flow, friction, damping and integration
   // took out.
   double integration_dissipation = 0;
   int64_t broken_edges = 0;                // since the start

@@ -49,6 +49,7 @@ NewtonSolver::NewtonSolver(const Model& model)
       search_(model.masses.size()),
       trial_(model.masses.size()),
       node_forces_(model.node_terms.empty() ? 0 : model.masses.size()) {
+  if (model.damping) damping_.emplace(model);
   double squares = 0;
   for (const double mass : model.masses) squares += mass * mass;
   gravity_force_ = std::sqrt(squares * Dot(gravity_, gravity_));
@@ -66,7 +67,8 @@ void NewtonSolver::SetRuns(std::span<const std::array<int64_t, 2>> runs) {
   std::fill(search_.begin(), search_.end(), Splat(0));
 }
 
-void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& displacements) {
+void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& displacements,
+                            double share) {
   ForAll([&](int64_t begin, int64_t end) {
     std::fill(gradient_.begin() + begin, gradient_.begin() + end, Splat(0));
   });
@@ -97,6 +99,7 @@ void NewtonSolver::Evaluate(const State& start, double dt, const NodalVector& di
   energy_magnitude_ = sums[0] + std::abs(sums[1]) + element_rounding_ * std::abs(elastic_energy_);
   force_scale_ = std::sqrt(sums[2]) + std::sqrt(sums[3]) + gravity_force_;
   if (!model_.node_terms.empty()) EvaluateNodeTerms(displacements);
+  if (damping_) EvaluateDamping(share);
   for (const FixedNode& fixed : fixed_nodes_) {
     Double4& residual = residual_[static_cast<size_t>(fixed.node)];
     residual = fixed.axes ? Splat(0) : residual;
@@ -132,6 +135,33 @@ void NewtonSolver::EvaluateNodeTerms(const NodalVector& displacements) {
   })));
 }
 
+void NewtonSolver::EvaluateDamping(double share) {
+  const double potential = damping_->Potential(share);
+  energy_ += potential;
+  energy_magnitude_ += std::abs(potential);
+  force_scale_ += std::sqrt(Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      const Double4 resistance = damping_->Resistance(node, share);
+      sum += resistance * resistance;
+      gradient_[node] += resistance;
+      residual_[node] = -gradient_[node];
+    }
+    return sum;
+  })));
+}
+
+double NewtonSolver::DampingLoss(const State& start, const NodalVector& displacements) {
+  if (!damping_) return 0;
+  return Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      sum += damping_->Resistance(node, 0) * (displacements[node] - start.displacements[node]);
+    }
+    return sum;
+  }));
+}
+
 double NewtonSolver::ElasticWork(const State& start, double dt, const NodalVector& displacements) {
   return Sum(blocks_.Sum([&](int64_t begin, int64_t end) {
     Double4 sum = Splat(0);
@@ -140,13 +170,20 @@ double NewtonSolver::ElasticWork(const State& start, double dt, const NodalVecto
       Double4 force = inertia_[node] * (moved - dt * start.velocities[node]) -
                       model_.masses[node] * gravity_ - gradient_[node];
       if (!node_forces_.empty()) force -= node_forces_[node];
+      if (damping_) force += damping_->Resistance(node, 0);
       sum += force * moved;
     }
     return sum;
   }));
 }
 
-void NewtonSolver::BeginStep(const NodalVector& displacements) {
+void NewtonSolver::BeginStep(const State& start, const NodalVector& displacements,
+                             StepReport& report) {
+  if (damping_) {
+    ScopedTimer timer(report.assembly_seconds);
+    ChooseBranches(start.displacements, BranchChoice::kStart);
+    damping_->BeginStep(start.displacements);
+  }
   ChooseBranches(displacements, BranchChoice::kStart);
 }
 
@@ -182,11 +219,12 @@ void NewtonSolver::Assemble(const NodalVector& displacements, Curvature curvatur
   for (const auto& term : model_.node_terms)
     term->AddStiffness(displacements, curvature, matrix_.couplings());
   matrix_.Finish(inertia_);
+  const Double4 gross = blocks_.Sum(
+      [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
+  if (damping_) damping_->AddTo(matrix_, inertia_);
   for (size_t node = 0; node < model_.mesh->rest_positions.size(); ++node)
     trial_[node] = ToDouble4(model_.mesh->rest_positions[node]) + displacements[node];
   pcg_.Prepare(matrix_, trial_);
-  const Double4 gross = blocks_.Sum(
-      [&](int64_t begin, int64_t end) { return matrix_.GrossTerms(displacements, begin, end); });
   // Displacements are double in any case, and so are their differences; elements see the latter.
   // Strain has rounding of the size of element rotations, energy that times stress.
   const double in_strain = element_rounding_ * kTermRounding;
@@ -232,7 +270,14 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
   {
     ScopedTimer timer(report.assembly_seconds);
     ChooseBranches(displacements, BranchChoice::kAccepted);
-    Evaluate(start, dt, displacements);
+    if (damping_) {
+      ForAll([&](int64_t begin, int64_t end) {
+        for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+          trial_[node] = displacements[node] - start.displacements[node];
+      });
+      damping_->SetMotion(trial_, dt, blocks_);
+    }
+    Evaluate(start, dt, displacements, 0);
     initial_elastic_energy_ = elastic_energy_;
     initial_energy_ = energy_;
   }
@@ -283,6 +328,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     bool accepted = false;
     bool at_rounding = false;
     branched = false;
+    if (damping_) damping_->SetSearch(search_, blocks_);
     for (int backtrack = 0; backtrack < kMaxBacktracks; ++backtrack, share /= 2) {
       ForAll([&](int64_t begin, int64_t end) {
         for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
@@ -292,7 +338,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       // other, as of fibres that are crushed, a solve that went by domains alone had no end. What
       // was turned over goes through no length on its way back, where its own branch has an edge.
       branched |= ChooseBranches(trial_, BranchChoice::kTrial);
-      Evaluate(start, dt, trial_);
+      Evaluate(start, dt, trial_, share);
       accepted = energy_ <= energy + kArmijo * share * slope_;
       if (accepted) break;
       // The promised decrease drowns in rounding: there the forces judge.
@@ -311,13 +357,14 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
       last_share = share;
       last_norm = norm;
       displacements.swap(trial_);
+      if (damping_) damping_->Accept(share, blocks_);
       if (ChooseBranches(displacements, BranchChoice::kAccepted)) {
         branched = true;
-        Evaluate(start, dt, displacements);
+        Evaluate(start, dt, displacements, 0);
       }
       continue;
     }
-    Evaluate(start, dt, displacements);
+    Evaluate(start, dt, displacements, 0);
     const double stopped_at = force_scale_ > 0 ? residual_norm_ / force_scale_ : 0;
     if (!at_rounding) return NotConverged(stopped_at);
     report.residual = std::max(report.residual, stopped_at);
@@ -326,7 +373,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
 }
 
 int64_t NewtonSolver::bytes() const {
-  return matrix_.bytes() + pcg_.bytes() + blocks_.bytes() +
+  return matrix_.bytes() + pcg_.bytes() + blocks_.bytes() + (damping_ ? damping_->bytes() : 0) +
          static_cast<int64_t>((4 * gradient_.size() + node_forces_.size()) * sizeof(Double4) +
                               inertia_.size() * sizeof(double) +
                               fixed_nodes_.size() * sizeof(FixedNode));

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "core/solver/block_sums.h"
 #include "core/solver/constraints.h"
 #include "core/solver/pcg.h"
+#include "core/solver/rayleigh_damping.h"
 #include "core/solver/step_report.h"
 #include "core/solver/stiffness_matrix.h"
 
@@ -20,14 +22,15 @@ namespace cleave {
 
 // Solves one backward Euler step: finds the displacements x that minimise the incremental potential
 //
-//   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n) + N(x)
+//   E(x) = |x - x_n - dt v_n|^2_M / (2 dt^2) + Psi(x) - M g . (x - x_n) + N(x) + R(x)
 //
-// N being the energy of the node terms, over the coordinates that are not given, by Newton's method
-// with positive semidefinite element stiffness and Armijo backtracking. Where the projection itself
-// slows convergence down, or what stands in for friction that slips, the exact stiffness is tried,
-// for as long as the linear solve finds it positive. A linear solve goes no further than the step
-// needs. Source: method note, section 7. Not thread-safe; loops run on the caller's TBB arena and
-// give the same bits for any number of threads.
+// N being the energy of the node terms and R that of Rayleigh damping, where there is any, over the
+// coordinates that are not given, by Newton's method with positive semidefinite element stiffness
+// and Armijo backtracking. Where the projection itself slows convergence down, or what stands in
+// for friction that slips, the exact stiffness is tried, for as long as the linear solve finds it
+// positive. A linear solve goes no further than the step needs. Source: method note, section 7. Not
+// thread-safe; loops run on the caller's TBB arena and give the same bits for any number of
+// threads.
 class NewtonSolver {
  public:
   // `model` must outlive the solver.
@@ -40,9 +43,10 @@ class NewtonSolver {
   // coordinate of the others is given.
   void SetRuns(std::span<const std::array<int64_t, 2>> runs);
 
-  // Chooses the branches of energies that jump; to be called before the first Solve of a time step,
-  // at the displacements (m) that it starts from. Solves leave them for lower ones only.
-  void BeginStep(const NodalVector& displacements);
+  // To be called before the first Solve of a time step from `start`, at the displacements (m) that
+  // it starts from: takes the stiffness that damps at `start`, and chooses the branches of energies
+  // that jump. Solves leave them for lower ones only.
+  void BeginStep(const State& start, const NodalVector& displacements, StepReport& report);
 
   // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
   // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
@@ -65,6 +69,8 @@ class NewtonSolver {
   double decrease() const { return initial_energy_ - energy_; }
   // J, work of the elastic forces at the solution along the way from the start of the step.
   double ElasticWork(const State& start, double dt, const NodalVector& displacements);
+  // J, that Rayleigh damping takes out along the same way; 0 where there is none.
+  double DampingLoss(const State& start, const NodalVector& displacements);
   // J, where that Solve started.
   double initial_elastic_energy() const { return initial_elastic_energy_; }
 
@@ -77,10 +83,13 @@ class NewtonSolver {
   void ForAll(const Body& body) const {
     ParallelFor(static_cast<int64_t>(gradient_.size()), 4096, body);
   }
-  // Sets the energies, gradient, residual and their norms at `displacements`.
-  void Evaluate(const State& start, double dt, const NodalVector& displacements);
+  // Sets the energies, gradient, residual and their norms at `displacements`, which lie `share` of
+  // the way along the search.
+  void Evaluate(const State& start, double dt, const NodalVector& displacements, double share);
   // Adds the node terms to what Evaluate set.
   void EvaluateNodeTerms(const NodalVector& displacements);
+  // Adds Rayleigh damping to it.
+  void EvaluateDamping(double share);
   // Sets the matrix, its preconditioner and what rounding may hide, at `displacements`.
   void Assemble(const NodalVector& displacements, Curvature curvature, StepReport& report);
   // Sets `search_` by a linear solve; returns whether it leads downhill.
@@ -96,6 +105,7 @@ class NewtonSolver {
   NodeBlocks blocks_;
   StiffnessMatrix matrix_;
   PcgSolver pcg_;
+  std::optional<RayleighDamping> damping_;
   const double element_rounding_;  // of elastic energies, in roundings of double
   std::vector<double> inertia_;    // kg/s^2, mass / dt^2
   NodalVector gradient_;           // N, dE/dx

@@ -25,6 +25,9 @@ struct StepReport {
   double integration_dissipation = 0;
   double contact_energy = 0;        // J, that node terms hold at the end of the last step
   double friction_dissipation = 0;  // J, that node terms took out for good
+  // J, that Rayleigh damping took out; of a step that breaks something the mean of what its motion
+  // before and after would lose.
+  double damping_dissipation = 0;
   double assembly_seconds = 0;
   double linear_solve_seconds = 0;
   double fracture_seconds = 0;

@@ -140,7 +140,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, state.released, end, displacements_);
-  newton_.BeginStep(displacements_);
+  newton_.BeginStep(state, displacements_, report);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
   // Motions move the body as it was, then it breaks: that way work and fracture energy match. What
   // integration loses is the elastic energy beyond its tangent, the squared change of velocity and
@@ -150,6 +150,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
                        newton_.ElasticWork(state, dt, displacements_);
   const KineticEnergies intact = MovingEnergies(dt, state);
   const double node_balance = NodeTermBalance(state);
+  const double damped = newton_.DampingLoss(state, displacements_);
   KineticEnergies moving = intact;
   double fracture_energy = 0;
   std::vector<EdgeBreak> breaks;
@@ -180,6 +181,8 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   report.edge_breaks.insert(report.edge_breaks.end(), breaks.begin(), breaks.end());
   report.fracture_energy += fracture_energy;
   report.plastic_work += flow.work;
+  // The potential that re-solves lower has half of what damping takes, as of viscosity above.
+  report.damping_dissipation += 0.5 * (damped + newton_.DampingLoss(state, displacements_));
   report.integration_dissipation += integration;
   report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)

@@ -86,6 +86,16 @@ void StiffnessMatrix::Finish(const std::vector<double>& inertia) {
   });
 }
 
+void StiffnessMatrix::AddBlocks(const StiffnessMatrix& other, double share) {
+  const auto scale = static_cast<float>(share);
+  ParallelFor(static_cast<int64_t>(upper_.size()), 1 << 16, [&](int64_t begin, int64_t end) {
+    for (auto k = static_cast<size_t>(begin); k < static_cast<size_t>(end); ++k) {
+      upper_[k] += scale * other.upper_[k];
+      lower_[k] += scale * other.lower_[k];
+    }
+  });
+}
+
 template <typename V>
 void StiffnessMatrix::Multiply(const std::vector<V>& x, double unit, int64_t begin, int64_t end,
                                std::vector<V>& product) const {

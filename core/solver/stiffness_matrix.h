@@ -31,6 +31,10 @@ class StiffnessMatrix {
   // Takes over what was added. `inertia` is mass / dt^2, kg/s^2, a node each, and must stay as it
   // is until the next call.
   void Finish(const std::vector<double>& inertia);
+  // After Finish: takes over another `inertia`, and adds `share` times the blocks of a matrix on
+  // the same edges.
+  void SetInertia(const std::vector<double>& inertia) { inertia_ = &inertia; }
+  void AddBlocks(const StiffnessMatrix& other, double share);
 
   // (A x) / unit of nodes [begin, end), unit being a power of two; V is Double4 or Float4. In float
   // the blocks' share is summed up in float.

@@ -132,6 +132,10 @@ Scene SceneFromMessage(const v1::Scene& message, Faults& faults) {
     if (message.sleep().has_speed()) sleep.speed = message.sleep().speed();
     if (message.sleep().has_time()) sleep.time = message.sleep().time();
   }
+  if (message.has_damping()) {
+    scene.damping =
+        Damping{message.damping().mass_coefficient(), message.damping().stiffness_coefficient()};
+  }
   if (message.has_render_mesh())
     scene.render_mesh = RenderMeshSourceFromMessage(message.render_mesh());
   for (int i = 0; i < message.colliders_size(); ++i) {

@@ -270,6 +270,12 @@ void WriteSettings(const Scene& scene, v1::Scene& message) {
   timing->set_frame_count(scene.timing.frame_count);
   timing->set_steps_per_frame(scene.timing.steps_per_frame);
 
+  if (scene.damping.has_value()) {
+    v1::Damping* damping = message.mutable_damping();
+    damping->set_mass_coefficient(scene.damping->mass_coefficient);
+    damping->set_stiffness_coefficient(scene.damping->stiffness_coefficient);
+  }
+
   v1::Quality* quality = message.mutable_quality();
   quality->set_newton_iterations(scene.quality.newton_iterations);
   quality->set_residual_tolerance(scene.quality.residual_tolerance);

@@ -83,7 +83,8 @@ class EnergyBalance {
   double Gap(const FrameReport& report) {
     const double held = report.kinetic_energy + report.elastic_energy + report.contact_energy;
     const double taken = report.fracture_energy + report.plastic_work +
-                         report.friction_dissipation + report.integration_dissipation;
+                         report.friction_dissipation + report.damping_dissipation +
+                         report.integration_dissipation;
     for (const double energy : {report.external_work, held, taken})
       largest_ = std::max(largest_, std::abs(energy));
     if (largest_ == 0) return 0;

@@ -69,6 +69,15 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   scene.gravity = Vec3{0, 0, -9.81};
   expect_adds(scene, "gravity");
   scene = minimal;
+  scene.damping = Damping{0, 0};
+  EXPECT_EQ(Plan(scene).total_bytes, base.total_bytes);
+  scene.damping = Damping{1, 0};
+  expect_adds(scene, "damping");
+  EXPECT_EQ(BytesOf(Plan(scene), "damping"), 1000 * 80);
+  scene.damping = Damping{0, 1};
+  expect_adds(scene, "damping");
+  EXPECT_EQ(BytesOf(Plan(scene), "damping"), 1000 * 80 + BytesOf(base, "stiffness matrix"));
+  scene = minimal;
   AddMotion(scene, "any");
   expect_adds(scene, "motions");
   scene = minimal;

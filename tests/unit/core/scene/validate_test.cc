@@ -295,6 +295,8 @@ TEST(ValidateScene, NamesTheFieldOfEveryKindOfFault) {
          s.timing.frames_per_second = 0.01;
          s.timing.steps_per_frame = 1;
        }},
+      {"damping.mass_coefficient", [](Scene& s) { s.damping = Damping{-1, 0}; }},
+      {"damping.stiffness_coefficient", [](Scene& s) { s.damping = Damping{0, kInf}; }},
       {"quality.newton_iterations", [](Scene& s) { s.quality.newton_iterations = 0; }},
       {"quality.residual_tolerance", [](Scene& s) { s.quality.residual_tolerance = 1; }},
       {"quality.step_tolerance", [](Scene& s) { s.quality.step_tolerance = 0; }},
@@ -317,10 +319,15 @@ TEST(ValidateScene, ReportsAllFaultsAtOnceWithValueAndRange) {
   Scene scene = GoodScene();
   scene.materials[0].poisson_ratio = 0.52;
   scene.timing.frame_count = 0;
+  scene.damping = Damping{kNan, 101};
   const absl::Status status = ValidateScene(scene).ToStatus();
   EXPECT_THAT(std::string(status.message()),
               HasSubstr("materials[0].poisson_ratio: 0.52 is outside [0, 0.4999]"));
   EXPECT_THAT(std::string(status.message()), HasSubstr("timing.frame_count: 0 is outside"));
+  EXPECT_THAT(std::string(status.message()),
+              HasSubstr("damping.mass_coefficient: nan is outside [0, 1e+06]"));
+  EXPECT_THAT(std::string(status.message()),
+              HasSubstr("damping.stiffness_coefficient: 101 is outside [0, 100]"));
 }
 
 TEST(ValidateScene, WarnsWhereTheResultWillBePoor) {

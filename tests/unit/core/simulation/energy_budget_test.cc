@@ -36,7 +36,8 @@ Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic
     if (!report.ok()) break;
     const double held = report->kinetic_energy + report->elastic_energy + report->contact_energy;
     const double taken = report->fracture_energy + report->plastic_work +
-                         report->friction_dissipation + report->integration_dissipation;
+                         report->friction_dissipation + report->damping_dissipation +
+                         report->integration_dissipation;
     for (const double energy : {report->external_work, held, taken, initial_kinetic_energy})
       budget.largest = std::max(budget.largest, std::abs(energy));
     EXPECT_NEAR(report->external_work + initial_kinetic_energy, held + taken,
@@ -49,6 +50,7 @@ Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic
     EXPECT_GE(report->fracture_energy, budget.last.fracture_energy) << "frame " << frame;
     EXPECT_GE(report->plastic_work, budget.last.plastic_work) << "frame " << frame;
     EXPECT_GE(report->friction_dissipation, budget.last.friction_dissipation) << "frame " << frame;
+    EXPECT_GE(report->damping_dissipation, budget.last.damping_dissipation) << "frame " << frame;
     budget.most_in_contact = std::max(budget.most_in_contact, report->contact_energy);
     budget.last = *report;
   }
@@ -116,6 +118,24 @@ TEST(EnergyBudget, SmallerStepsLoseLessToIntegration) {
   EXPECT_LT(lost[1], 0.5 * lost[0]);
 }
 
+TEST(EnergyBudget, ClosesForADampedBarThatSwingsAndIsPulledApart) {
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    for (const bool breaks : {false, true}) {
+      Scene scene = Bar(0.01, 30);
+      scene.quality.precision = precision;
+      if (precision == Precision::kFloat) scene.quality.residual_tolerance = 1e-5;
+      scene.gravity = Vec3{0, 0, -9.81};
+      scene.damping = Damping{2, 0.005};
+      if (breaks) scene.materials[0].tensile_strength = 1e4;
+      AddMotion(scene, "right").keyframes = {{0, {0, 0, 0}, 0}, {1, {3, 0, 0}, 0}};
+      if (!breaks) scene.motions[1].release = Release{.time = 0.05};
+      const Budget budget = MustClose(scene, BarMesh());
+      EXPECT_EQ(budget.last.fragments > 1, breaks);
+      EXPECT_GT(budget.last.damping_dissipation, 0.02 * budget.largest);
+    }
+  }
+}
+
 TEST(EnergyBudget, ClosesForABodyThatSpins) {
   Scene scene = Bar(0.01, 30);
   scene.motions.clear();
@@ -168,6 +188,7 @@ TEST(EnergyBudget, ClosesWithEveryPartAtOnce) {
     metal.fibres.push_back({2e5, ConstantDirection{{1, 1, 0}}});
     scene.impurities = Impurities{.noise = 0.1};
     scene.gravity = Vec3{0, 0, -9.81};
+    if (std::isinf(flow_rate)) scene.damping = Damping{0.5, 0.001};
     scene.contact = Contact{.stiffness = 5, .friction = 0.3};
     scene.colliders.emplace_back().shape = PlaneShape{{0, 0, -0.25}, {0, 0, 1}};
     scene.colliders[0].friction = 0.4;
@@ -186,6 +207,7 @@ TEST(EnergyBudget, ClosesWithEveryPartAtOnce) {
     EXPECT_GT(budget.last.plastic_work, 0.01 * budget.largest);
     EXPECT_GT(budget.last.fracture_energy, 0.005 * budget.largest);
     EXPECT_GT(budget.last.friction_dissipation, 0.005 * budget.largest);
+    EXPECT_EQ(budget.last.damping_dissipation > 0.005 * budget.largest, scene.damping.has_value());
     EXPECT_GT(budget.most_in_contact, 0.001 * budget.largest);
   }
 }

@@ -35,7 +35,7 @@ inline FrameReport MustAdvance(Simulation& simulation) { return RunFrames(simula
 inline double Budget(const FrameReport& report, double start) {
   return report.external_work + start - report.kinetic_energy - report.elastic_energy -
          report.contact_energy - report.fracture_energy - report.friction_dissipation -
-         report.integration_dissipation;
+         report.damping_dissipation - report.integration_dissipation;
 }
 
 }  // namespace cleave

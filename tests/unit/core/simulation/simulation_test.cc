@@ -30,6 +30,32 @@ TEST(Simulation, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one->positions(), two->positions());
 }
 
+TEST(Simulation, OfADampedSceneNeitherThreadsNorARestoreChangeABit) {
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    Scene scene = BreakingScene();
+    scene.damping = Damping{1, 0.002};
+    scene.quality.precision = precision;
+    auto one = MustCreate(scene, BreakingMesh(), 1);
+    auto two = MustCreate(scene, BreakingMesh(), 2);
+    auto restored = MustCreate(scene, BreakingMesh(), 1);
+    FrameReport last;
+    for (int frame = 0; frame < 8; ++frame) {
+      last = MustAdvance(*one);
+      MustAdvance(*two);
+      ASSERT_EQ(one->state_hash(), two->state_hash()) << "frame " << frame;
+      if (frame == 5) ASSERT_TRUE(restored->Restore(one->Save()).ok());
+      if (frame <= 5) continue;
+      EXPECT_EQ(MustAdvance(*restored).damping_dissipation, last.damping_dissipation);
+      EXPECT_EQ(restored->state_hash(), one->state_hash());
+    }
+    EXPECT_GT(last.broken_edges, 0);
+    EXPECT_GT(last.damping_dissipation, 0);
+    // What is damped is another run.
+    scene.damping.reset();
+    EXPECT_FALSE(MustCreate(scene, BreakingMesh())->Restore(one->Save()).ok());
+  }
+}
+
 TEST(Simulation, ARestoredRunGoesOnWithTheSameBits) {
   auto whole = MustCreate(BreakingScene(), BreakingMesh());
   std::string saved;

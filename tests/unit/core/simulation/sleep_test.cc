@@ -67,6 +67,21 @@ TEST(Sleep, ABlockThatWasDroppedGoesToSleepAndThenRestsToTheBit) {
   EXPECT_NEAR(Budget(report, 0), 0, 1e-6 * report.external_work);
 }
 
+TEST(Sleep, ADampedBlockComesToRestSooner) {
+  Scene scene = GroundScene();
+  const TetMesh mesh = Blocks({{0, 0, 0.02}, {0.5, 0, 0}});
+  const int without = RunUntilAsleep(**Simulation::Create(scene, mesh, {}), 2, 400);
+  scene.damping = Damping{0, 0.005};
+  auto simulation = *Simulation::Create(scene, mesh, {});
+  EXPECT_LT(RunUntilAsleep(*simulation, 2, 400), without);
+  const std::vector<Vec3> positions = simulation->positions();
+  const FrameReport report = RunFrames(*simulation, 10);
+  EXPECT_EQ(simulation->positions(), positions);
+  EXPECT_EQ(report.kinetic_energy, 0);
+  EXPECT_GT(report.damping_dissipation, 0);
+  EXPECT_NEAR(Budget(report, 0), 0, 1e-6 * report.external_work);
+}
+
 TEST(Sleep, NothingSleepsUnlessTheSceneAsksForIt) {
   Scene scene = GroundScene();
   scene.sleep.reset();

@@ -143,6 +143,7 @@ constexpr char kEveryField[] = R"pb(
     reformulation: REFORMULATION_EDGE_PROJECTED
   }
   timing { frames_per_second: 30 frame_count: 12 steps_per_frame: 3 }
+  damping { mass_coefficient: 0.5 stiffness_coefficient: 0.002 }
   quality {
     newton_iterations: 4
     residual_tolerance: 1e-5
