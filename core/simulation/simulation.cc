@@ -91,7 +91,6 @@ class BodySimulation final : public Simulation {
     report.steps = steps.steps;
     report.step_halvings = steps.step_halvings;
     report.shortest_step = steps.shortest_step;
-    report.quality = model_.quality;
     report.newton_iterations = steps.newton_iterations;
     report.linear_iterations = steps.linear_iterations;
     report.residual = steps.residual;

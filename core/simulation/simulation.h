@@ -32,7 +32,6 @@ struct FrameReport {
   int32_t steps = 0;  // halved steps included
   int32_t step_halvings = 0;
   double shortest_step = 0;  // s, that was taken
-  Quality quality;           // that was in force
   int32_t newton_iterations = 0;
   int32_t linear_iterations = 0;
   int32_t break_passes = 0;

@@ -43,6 +43,7 @@ absl::StatusOr<std::unique_ptr<RecordedSimulation>> RecordedSimulation::Open(
   CLEAVE_ASSIGN_OR_RETURN(recorded->header_,
                           MakeStreamHeader(parameters, recorded->rest_positions_));
   if (recorded->head() < 0) recorded->whole_pieces_ = WholePiecesMessage(inputs.mesh);
+  recorded->in_force_ = InForce(scene);
   recorded->checkpoint_interval_ = scene.output.checkpoint_interval;
   CLEAVE_ASSIGN_OR_RETURN(recorded->simulation_,
                           Simulation::Create(scene, std::move(inputs.mesh), {threads}));
@@ -108,7 +109,7 @@ absl::Status RecordedSimulation::CatchUp(const StopFlag& stop) {
                                             "build, or a damaged directory"));
   }
   if (frame() > reports_.last_frame()) {
-    CLEAVE_RETURN_IF_ERROR(reports_.Append(frame(), ReportLine(report)));
+    CLEAVE_RETURN_IF_ERROR(reports_.Append(frame(), ReportLine(report, in_force_)));
   }
   // Only a session of a build without events has committed frames that lack theirs.
   if (frame() > events_.last_frame() && !report.events.empty()) {
@@ -124,7 +125,7 @@ absl::StatusOr<FrameReport> RecordedSimulation::Advance(const StopFlag& stop) {
 absl::Status RecordedSimulation::Commit(const FrameReport& report) {
   CLEAVE_ASSIGN_OR_RETURN(const EncodedFrame encoded, encoder_->Encode(CurrentFrame()));
   // Report and events first: opening cuts those that lead the log, and never misses one.
-  CLEAVE_RETURN_IF_ERROR(reports_.Append(report.frame, ReportLine(report)));
+  CLEAVE_RETURN_IF_ERROR(reports_.Append(report.frame, ReportLine(report, in_force_)));
   if (!report.events.empty()) CLEAVE_RETURN_IF_ERROR(events_.Append(EventMessage(report)));
   CLEAVE_RETURN_IF_ERROR(log_.Append(encoder_->header_bytes(), encoded));
   return head() % checkpoint_interval_ == 0 ? Checkpoint() : absl::OkStatus();

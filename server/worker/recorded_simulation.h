@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "cleave/v1/session.pb.h"
 #include "core/base/stop_flag.h"
 #include "core/base/vec3.h"
@@ -73,6 +74,7 @@ class RecordedSimulation {
   std::vector<Vec3> rest_positions_;
   std::vector<std::array<int32_t, 2>> edges_;  // of the mesh, as frames number them
   v1::FrameEvents whole_pieces_;               // where the log is empty
+  std::string in_force_;                       // as every report line repeats it
   StreamHeader header_;
   int64_t checkpoint_interval_ = 1;
   int64_t newest_checkpoint_ = -1;
@@ -83,8 +85,12 @@ class RecordedSimulation {
 // The numbers of a report that a display shows.
 v1::Progress ProgressOf(const FrameReport& report);
 
-// A report as a line of JSON, without its newline.
-std::string ReportLine(const FrameReport& report);
+// What the numbers of a run rest on, as a JSON object: precision and tolerances, step, what the
+// scene has besides a body, elastic laws, and the settings of damping, fracture and impurities
+// where it has them.
+std::string InForce(const Scene& scene);
+// A report as a line of JSON, without its newline. `in_force` is InForce of its scene.
+std::string ReportLine(const FrameReport& report, absl::string_view in_force);
 
 }  // namespace cleave
 
