@@ -106,10 +106,10 @@ absl::Status CheckFormat(const Options& options) {
   return faults.ToStatus();
 }
 
-void NoteOpenFaces(int64_t open_faces) {
-  if (open_faces == 0) return;
-  PrintNote(absl::StrCat("the render mesh does not go round the body at ", open_faces,
-                         " faces; pieces may have holes where these break"));
+void NoteGaps(int64_t gaps) {
+  if (gaps == 0) return;
+  PrintNote(absl::StrCat("the render mesh does not follow the body's shape at ", gaps,
+                         " faces; where these break, pieces are closed by flat caps"));
 }
 
 absl::Status ExportBake(Program& program, const Options& options, const RecordedRun& run,
@@ -130,7 +130,7 @@ absl::Status ExportBake(Program& program, const Options& options, const Recorded
   PrintResult(result.path);
   for (const std::string& path : result.also) PrintResult(path);
   PrintNote(absl::StrCat(result.written, " frames written, ", result.kept, " were there already"));
-  NoteOpenFaces(result.open_faces);
+  NoteGaps(result.gaps);
   return absl::OkStatus();
 }
 
@@ -167,7 +167,7 @@ absl::Status Export(Program& program, const Options& options) {
   if (!result.ok()) return result.status();
   PrintResult(result->collection.empty() ? target.folder : result->collection);
   PrintNote(absl::StrCat(result->written, " files written, ", result->kept, " were there already"));
-  NoteOpenFaces(result->open_faces);
+  NoteGaps(result->gaps);
   return absl::OkStatus();
 }
 

@@ -23,9 +23,8 @@ absl::Status Named(const std::string& path, const absl::Status& status) {
 }
 
 // What an earlier run or watch kept, if it kept one.
-absl::StatusOr<std::optional<RenderMesh>> KeptRenderMesh(const std::string& run,
+absl::StatusOr<std::optional<RenderMesh>> KeptRenderMesh(const std::string& path,
                                                          const TetMesh& mesh) {
-  const std::string path = RunFolder::Of(run).render_mesh();
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
   CLEAVE_ASSIGN_OR_RETURN(const std::string bytes, ReadFileBytes(path));
@@ -64,13 +63,19 @@ absl::StatusOr<std::optional<RenderMesh>> ShownRenderMesh(const RenderMeshOption
                                                           const std::string& run,
                                                           const TetMesh& mesh) {
   if (options.own_surface) return std::nullopt;
-  if (options.file.empty()) return KeptRenderMesh(run, mesh);
-  CLEAVE_ASSIGN_OR_RETURN(RenderMesh render, ReadRenderMeshFile(options.file));
-  ScaleMesh(options.scale.value_or(1), render);
-  const Faults faults = CheckRenderMeshFits(render, mesh.rest_positions);
-  if (!faults.ok()) return Named(options.file, faults.ToStatus());
-  if (const int64_t open = CountOpenEdges(render.triangles); open > 0)
-    PrintNote(absl::StrCat(options.file, " ", OpenEdgesNote(open)));
+  const std::string kept = RunFolder::Of(run).render_mesh();
+  std::optional<RenderMesh> render;
+  if (options.file.empty()) {
+    CLEAVE_ASSIGN_OR_RETURN(render, KeptRenderMesh(kept, mesh));
+  } else {
+    CLEAVE_ASSIGN_OR_RETURN(render, ReadRenderMeshFile(options.file));
+    ScaleMesh(options.scale.value_or(1), *render);
+    const Faults faults = CheckRenderMeshFits(*render, mesh.rest_positions);
+    if (!faults.ok()) return Named(options.file, faults.ToStatus());
+  }
+  const int64_t open = render ? CountOpenEdges(render->triangles) : 0;
+  if (open > 0)
+    PrintNote(absl::StrCat(options.file.empty() ? kept : options.file, " ", OpenEdgesNote(open)));
   return render;
 }
 

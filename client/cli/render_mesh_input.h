@@ -25,7 +25,7 @@ void AddRenderMeshOptions(CLI::App& verb, RenderMeshOptions& options);
 void CheckRenderMeshOptions(const RenderMeshOptions& options, Faults& faults);
 
 // The render mesh (m) to show: that of the options, or what the run's folder (or the .clv's) holds
-// of its scene, or none. Says where one of the options is not closed. Errors: InvalidArgument, with
+// of its scene, or none. Says where it is not closed. Errors: InvalidArgument, with
 // the path, for what CheckRenderMesh and CheckRenderMeshFits refuse; what reading gives.
 absl::StatusOr<std::optional<RenderMesh>> ShownRenderMesh(const RenderMeshOptions& options,
                                                           const std::string& run,

@@ -111,11 +111,12 @@ void EmbeddedMesh::CutAcross(size_t triangle, std::span<const Corner, 3> corners
   AddFan(rest, triangle, other);
   if (!IsSplit(EdgeAt(triangle, apart))) return;
   // Towards the middle of all cuts between these two nodes.
+  const int32_t body_edge = body_edges_[EdgeAt(triangle, apart)];
   const auto tet = static_cast<size_t>(divided_.place(static_cast<size_t>(corners[0].point)).tet);
   AddTriangle(surface_id::OfRenderCrack(triangle, 3, apart, 0), tip.front().point, tip.back().point,
-              PairPoint(EdgeAt(triangle, apart), own), tet, own, -1);
+              PairPoint(body_edge, own, other), tet, own, -1);
   AddTriangle(surface_id::OfRenderCrack(triangle, 3, next, 0), rest.front().point,
-              rest.back().point, PairPoint(EdgeAt(triangle, apart), other), tet, other, -1);
+              rest.back().point, PairPoint(body_edge, other, own), tet, other, -1);
 }
 
 void EmbeddedMesh::CutBetween(size_t triangle, std::span<const Corner, 3> corners,
@@ -177,14 +178,16 @@ void EmbeddedMesh::CutBetween(size_t triangle, std::span<const Corner, 3> corner
 void EmbeddedMesh::AddWings(size_t triangle, const Parting& parting) {
   const auto first = static_cast<size_t>(divided_.mesh().triangles[triangle][0]);
   const auto tet = static_cast<size_t>(divided_.place(first).tet);
+  const Triple nodes = divided_.LabelsOf(triangle);
   for (size_t k = 0; k < 3; ++k) {
     if (!parting.open[k]) continue;
     for (const size_t side : {k, (k + 1) % 3}) {
-      const int32_t node = NodeAt(triangle, side);
+      const int32_t node = nodes[side];
+      const int32_t other = nodes[side == k ? (k + 1) % 3 : k];
       int32_t from = MiddlePoint(triangle, parting, side);
       int32_t to = EdgePoint(EdgeAt(triangle, k), node);
-      const int32_t pair = PairPoint(EdgeAt(triangle, k), node);
-      const int32_t triple = TriplePoint(triangle, parting, side);
+      const int32_t pair = PairPoint(body_edges_[EdgeAt(triangle, k)], node, other);
+      const int32_t triple = TriplePoint(nodes, triangle_faces_[triangle], parting, side);
       const SurfaceId outer = surface_id::OfRenderCrack(triangle, k, side, 0);
       const SurfaceId inner = surface_id::OfRenderCrack(triangle, k, side, 1);
       if (side == k) {

@@ -8,10 +8,6 @@
 namespace cleave {
 namespace {
 
-// In place of an edge of the body between the nodes of an edge's ends.
-constexpr int32_t kSameNode = -1;
-constexpr int32_t kNoEdge = -2;
-
 void SortUnique(std::vector<int32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
@@ -29,6 +25,7 @@ EmbeddedMesh::EmbeddedMesh(const TetMesh& mesh, const Incidence& incidence, cons
       is_parted_(incidence.edges.size(), 0),
       copies_(mesh, incidence, faces, false, out_) {
   BindTriangles();
+  BindGaps();
   out_.tet_masks.assign(mesh.tets.size(), 0);
   const RenderMesh& whole = divided_.mesh();
   for (size_t point = 0; point < whole.points.size(); ++point) {
@@ -97,20 +94,33 @@ bool EmbeddedMesh::IsCut(size_t edge) const {
 }
 
 bool EmbeddedMesh::IsSplit(size_t edge) const {
-  const int32_t of_body = body_edges_[edge];
-  if (of_body == kSameNode) return false;
-  if (of_body != kNoEdge) return copies_.Splits(of_body);
   const auto [from, to] = divided_.edges()[edge];
-  return pieces_->piece_of(divided_.label(static_cast<size_t>(from))) !=
-         pieces_->piece_of(divided_.label(static_cast<size_t>(to)));
+  return IsSplit(body_edges_[edge], divided_.label(static_cast<size_t>(from)),
+                 divided_.label(static_cast<size_t>(to)));
+}
+
+bool EmbeddedMesh::IsSplit(int32_t body_edge, int32_t a, int32_t b) const {
+  if (body_edge == kSameNode) return false;
+  if (body_edge != kNoEdge) return copies_.Splits(body_edge);
+  return pieces_->piece_of(a) != pieces_->piece_of(b);
 }
 
 EmbeddedMesh::Parting EmbeddedMesh::PartingOf(size_t triangle) const {
+  const Triple& edges = divided_.triangle_edges(triangle);
+  Triple body_edges{};
+  for (size_t k = 0; k < 3; ++k) body_edges[k] = body_edges_[static_cast<size_t>(edges[k])];
+  return PartingOf(divided_.LabelsOf(triangle), body_edges, triangle_faces_[triangle]);
+}
+
+EmbeddedMesh::Parting EmbeddedMesh::PartingOf(const Triple& nodes, const Triple& body_edges,
+                                              int64_t face) const {
   Parting parting;
-  const int64_t face = triangle_faces_[triangle];
+  const auto splits = [&](size_t k) {
+    return IsSplit(body_edges[k], nodes[k], nodes[(k + 1) % 3]);
+  };
   if (face < 0) {
     for (size_t k = 0; k < 3; ++k) {
-      parting.open[k] = IsSplit(EdgeAt(triangle, k));
+      parting.open[k] = splits(k);
       if (parting.open[k]) continue;
       const auto [low, high] = std::minmax({parting.component[k], parting.component[(k + 1) % 3]});
       for (uint8_t& component : parting.component) {
@@ -122,17 +132,15 @@ EmbeddedMesh::Parting EmbeddedMesh::PartingOf(size_t triangle) const {
   const auto tet = static_cast<size_t>(face / 4);
   const int32_t across = faces_.neighbors[tet][static_cast<size_t>(face % 4)];
   const FaceState state = copies_.StateOf(tet, static_cast<size_t>(face % 4));
-  for (size_t k = 0; k < 3; ++k)
-    parting.component[k] = state.component[state.IndexOf(NodeAt(triangle, k))];
+  for (size_t k = 0; k < 3; ++k) parting.component[k] = state.component[state.IndexOf(nodes[k])];
   for (size_t k = 0; k < 3; ++k) {
     const size_t next = (k + 1) % 3;
-    const int32_t a = NodeAt(triangle, k);
-    const int32_t b = NodeAt(triangle, next);
-    parting.open[k] =
-        copies_.PartsNodes(tet, a, b) &&
-        (across < 0 || copies_.PartsNodes(static_cast<size_t>(across / 4), a, b)) &&
-        // Else all of its points are whole: two faces on each other.
-        (parting.component[k] != parting.component[next] || IsSplit(EdgeAt(triangle, k)));
+    const int32_t a = nodes[k];
+    const int32_t b = nodes[next];
+    parting.open[k] = copies_.PartsNodes(tet, a, b) &&
+                      (across < 0 || copies_.PartsNodes(static_cast<size_t>(across / 4), a, b)) &&
+                      // Else all of its points are whole: two faces on each other.
+                      (parting.component[k] != parting.component[next] || splits(k));
   }
   return parting;
 }
@@ -179,15 +187,12 @@ int32_t EmbeddedMesh::PairPointOf(int32_t body_edge, int32_t node) {
   return at;
 }
 
-int32_t EmbeddedMesh::PairPoint(size_t edge, int32_t node) {
-  if (body_edges_[edge] >= 0) return PairPointOf(body_edges_[edge], node);
-  const auto [from, to] = divided_.edges()[edge];
-  const int32_t a = divided_.label(static_cast<size_t>(from));
-  const int32_t b = divided_.label(static_cast<size_t>(to));
-  const auto [low, high] = std::minmax({a, b});
+int32_t EmbeddedMesh::PairPoint(int32_t body_edge, int32_t node, int32_t other) {
+  if (body_edge >= 0) return PairPointOf(body_edge, node);
+  const auto [low, high] = std::minmax({node, other});
   const size_t side = node == high ? 1 : 0;
-  return Put(surface_id::OfLoosePair(static_cast<size_t>(hubs_.IndexOf(a, b)), side),
-             {hubs_.Find(a, b)->place(),
+  return Put(surface_id::OfLoosePair(static_cast<size_t>(hubs_.IndexOf(low, high)), side),
+             {hubs_.Find(low, high)->place(),
               {low, high, -1, -1},
               {0.5, 0.5, 0, 0},
               2,
@@ -204,14 +209,14 @@ int32_t EmbeddedMesh::FacePointOf(const FaceState& state, int32_t node) {
   return at;
 }
 
-int32_t EmbeddedMesh::TriplePoint(size_t triangle, const Parting& parting, size_t corner) {
-  const int32_t node = NodeAt(triangle, corner);
-  const int64_t face = triangle_faces_[triangle];
+int32_t EmbeddedMesh::TriplePoint(const Triple& turned, int64_t face, const Parting& parting,
+                                  size_t corner) {
   if (face >= 0) {
     return FacePointOf(
-        copies_.StateOf(static_cast<size_t>(face / 4), static_cast<size_t>(face % 4)), node);
+        copies_.StateOf(static_cast<size_t>(face / 4), static_cast<size_t>(face % 4)),
+        turned[corner]);
   }
-  Triple nodes = divided_.LabelsOf(triangle);
+  Triple nodes = turned;
   std::sort(nodes.begin(), nodes.end());
   SurfacePoint point{hubs_.Find(nodes)->place(),
                      {nodes[0], nodes[1], nodes[2], -1},
@@ -222,8 +227,8 @@ int32_t EmbeddedMesh::TriplePoint(size_t triangle, const Parting& parting, size_
   size_t first = 3;
   for (size_t k = 0; k < 3; ++k) {
     if (parting.component[k] != parting.component[corner]) continue;
-    const auto place = static_cast<size_t>(
-        std::find(nodes.begin(), nodes.end(), NodeAt(triangle, k)) - nodes.begin());
+    const auto place =
+        static_cast<size_t>(std::find(nodes.begin(), nodes.end(), turned[k]) - nodes.begin());
     point.owners |= static_cast<uint8_t>(1u << place);
     first = std::min(first, place);
   }
@@ -269,8 +274,9 @@ int64_t EmbeddedMesh::Break(std::span<const int32_t> edges, const NamedPieces& p
     }
     if (hubs_.inside(tet) != 0 && Separated(mask)) CutTet(tet);
   }
+  made += static_cast<int64_t>(touched_.size()) + CapGaps();
   pieces_ = nullptr;
-  return made + static_cast<int64_t>(touched_.size());
+  return made;
 }
 
 }  // namespace cleave

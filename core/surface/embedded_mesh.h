@@ -29,13 +29,17 @@ namespace cleave {
 // the cut of the render mesh instead, and fans between these and the cut. So cracks open as those
 // of the body's own surface do, whether they cut a piece off or not, and tips close by themselves.
 //
+// Where the render mesh does not follow the body's faces, as where it bridges a crease of it, there
+// are gaps between what the cuts of both go round (render_hubs.h). Cracks there are closed by caps:
+// cones from the rim of a group of gaps to one point, a copy of it for each side.
+//
 // What holds: of a closed render mesh every piece is closed, each directed edge standing against as
-// many of its reverse, and rest volumes of the pieces sum to the render mesh's; both but for the
-// faults that open_faces() counts. Rigid motions of pieces are followed exactly. Ids and records
-// follow from the broken edges alone, as those of a visible surface do. What does not: crack faces
-// are as coarse as the tets, with fans at the rim, may touch along edges, and may reach past the
-// render mesh where it is bent inward between nodes. A piece whose corner cells hold no point of
-// the render mesh and lie outside of it is not shown.
+// many of its reverse, and rest volumes of the pieces sum to the render mesh's. Rigid motions of
+// pieces are followed exactly. Ids and records follow from the broken edges alone, as those of a
+// visible surface do. What does not: crack faces are as coarse as the tets, with fans at the rim,
+// may touch along edges, which shared_edges.h parts, and may reach past the render mesh where it is
+// bent inward between nodes. A piece whose corner cells hold no point of the render mesh and lie
+// outside of it is not shown.
 //
 // Breaking makes anew only what is round edges that some tet has come to part. Not thread-safe.
 class EmbeddedMesh {
@@ -59,9 +63,8 @@ class EmbeddedMesh {
   // The triangle of the render mesh behind each, -1 inside.
   const std::vector<int32_t>& sources() const { return sources_; }
 
-  // Faces of tets at which the render mesh does not go round the body as its boundary does: where
-  // one of them is cut, pieces may have a hole.
-  int64_t open_faces() const { return hubs_.open_faces(); }
+  // Where the render mesh does not follow the body's faces: cracks there are closed by caps.
+  int64_t gaps() const { return static_cast<int64_t>(hubs_.gaps().size()); }
   // The render mesh as it is divided; points keep their ids.
   const RenderMesh& divided() const { return divided_.mesh(); }
 
@@ -71,12 +74,21 @@ class EmbeddedMesh {
     std::array<float, 2> uv{};
     unsigned place = 0;  // in a triangle: a corner, 3 + an edge, or 6 in the middle
   };
-  // How a triangle between three nodes comes apart.
+  // How a triangle, or a gap, between three nodes comes apart.
   struct Parting {
     std::array<uint8_t, 3> component{0, 1, 2};  // of each corner: numbers of the face's nodes
     std::array<bool, 3> open{};  // between corner i and the next, a crack goes inwards
   };
   using Triple = DividedMesh::Triple;
+  // A node of a group of gaps.
+  struct RimNode {
+    int32_t group = 0;
+    int32_t node = 0;
+    int32_t joined = 0;  // the first of the group's that unbroken edges of its gaps join to it
+  };
+  // In place of an edge of the body between two nodes.
+  static constexpr int32_t kSameNode = -1;
+  static constexpr int32_t kNoEdge = -2;
 
   static bool AreThree(const std::array<int32_t, 3>& nodes) {
     return nodes[0] != nodes[1] && nodes[1] != nodes[2] && nodes[2] != nodes[0];
@@ -86,14 +98,18 @@ class EmbeddedMesh {
   size_t EdgeAt(size_t triangle, size_t k) const;
   bool IsCut(size_t edge) const;    // has a point where its nodes meet
   bool IsSplit(size_t edge) const;  // and that has two copies
+  // The same for nodes with that edge of the body, or none.
+  bool IsSplit(int32_t body_edge, int32_t a, int32_t b) const;
   Parting PartingOf(size_t triangle) const;
+  Parting PartingOf(const Triple& nodes, const Triple& body_edges, int64_t face) const;
 
   int32_t Put(SurfaceId id, const SurfacePoint& point);
   int32_t EdgePoint(size_t edge, int32_t node);
   int32_t MiddlePoint(size_t triangle, const Parting& parting, size_t corner);
-  int32_t PairPoint(size_t edge, int32_t node);
+  // Of nodes with that edge of the body, or none, on the side of `node`.
+  int32_t PairPoint(int32_t body_edge, int32_t node, int32_t other);
   int32_t PairPointOf(int32_t body_edge, int32_t node);
-  int32_t TriplePoint(size_t triangle, const Parting& parting, size_t corner);
+  int32_t TriplePoint(const Triple& nodes, int64_t face, const Parting& parting, size_t corner);
   int32_t FacePointOf(const FaceState& state, int32_t node);
 
   // What is made after this takes the places in `slots`, and then new ones.
@@ -109,6 +125,13 @@ class EmbeddedMesh {
   void AddWings(size_t triangle, const Parting& parting);
   void CutTet(size_t tet);
 
+  // embedded_caps.cc.
+  void BindGaps();
+  size_t RimIndex(int32_t group, int32_t node) const;
+  void JoinRims();
+  int32_t ApexPoint(int32_t group, int32_t node);
+  int64_t CapGaps();
+
   const TetMesh& mesh_;
   const Incidence& incidence_;
   const Faces& faces_;
@@ -121,6 +144,9 @@ class EmbeddedMesh {
   std::vector<std::array<int32_t, 2>> edge_triangles_;
   Csr tet_points_;                  // points of the divided mesh that go with each tet
   std::vector<uint8_t> is_parted_;  // an edge of the body each: by some tet
+  std::vector<Triple> gap_edges_;   // of the body, of each gap's edges, or kNoEdge
+  std::vector<Vec3> apexes_;        // m at rest, a group of gaps each
+  std::vector<RimNode> rim_;        // ascending
 
   const NamedPieces* pieces_ = nullptr;  // in a call
   SurfaceTopology out_;
@@ -131,6 +157,7 @@ class EmbeddedMesh {
   // Places in the topology of what was made of cut triangles and tets.
   std::unordered_map<int32_t, std::vector<int32_t>> triangle_slots_;
   std::unordered_map<int32_t, std::vector<int32_t>> tet_slots_;
+  std::vector<int32_t> cap_slots_;
 
   // Scratch of a call.
   std::vector<int32_t> parted_;

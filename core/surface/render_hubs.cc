@@ -1,7 +1,9 @@
 #include "core/surface/render_hubs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <iterator>
 
 namespace cleave {
@@ -32,7 +34,7 @@ void Add(const Vec3& place, RenderHubs::Hub& hub) {
 
 RenderHubs::RenderHubs(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided) {
   FindHubs(divided);
-  FindInside(mesh, faces, divided);
+  FindGaps(mesh, faces, divided);
 }
 
 const RenderHubs::Hub* RenderHubs::Find(int32_t a, int32_t b) const {
@@ -74,61 +76,107 @@ void RenderHubs::FindHubs(const DividedMesh& divided) {
 }
 
 // The render mesh goes round some tets: those from which one cannot leave through faces at whose
-// nodes it has a triangle. As it is closed, so is what its triangles are of faces.
-void RenderHubs::FindInside(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided) {
-  std::map<int64_t, int32_t> crossings;  // outward of the lower tet, by face
-  for (size_t i = 0; i < divided.mesh().triangles.size(); ++i) {
-    const DividedMesh::Triple nodes = divided.LabelsOf(i);
-    if (nodes[0] == nodes[1] || nodes[1] == nodes[2] || nodes[2] == nodes[0]) continue;
-    const int64_t face = divided.FindFace(nodes);
-    if (face < 0) {
-      ++open_faces_;
-      continue;
-    }
-    DividedMesh::Triple outward{};
-    for (size_t k = 0; k < 3; ++k) {
-      const auto vertex = static_cast<size_t>(kTetFaces[static_cast<size_t>(face % 4)][k]);
-      outward[k] = mesh.tets[static_cast<size_t>(face / 4)][vertex];
-    }
-    crossings[face] += TurnsAs(nodes, outward) ? 1 : -1;
-  }
+// nodes it has a triangle.
+void RenderHubs::FindInside(const Faces& faces, const Crossings& crossings) {
   const auto crossing_of = [&](int64_t face) {
     const auto found = crossings.find(face);
     return found == crossings.end() ? 0 : found->second;
   };
-  inside_.assign(mesh.tets.size(), 0);
-  std::vector<uint8_t> known(mesh.tets.size(), 0);
-  std::vector<int32_t> queue;
-  for (const TetFace& side : faces.boundary) {
-    const int32_t crossing = crossing_of(4 * int64_t{side.tet} + side.face);
-    if (known[static_cast<size_t>(side.tet)] != 0) {
-      open_faces_ += inside_[static_cast<size_t>(side.tet)] != crossing ? 1 : 0;
-      continue;
-    }
-    known[static_cast<size_t>(side.tet)] = 1;
-    inside_[static_cast<size_t>(side.tet)] = crossing;
-    queue.push_back(side.tet);
-    while (!queue.empty()) {
-      const int32_t tet = queue.back();
-      queue.pop_back();
+  inside_.assign(faces.neighbors.size(), 0);
+  std::vector<uint8_t> known(faces.neighbors.size(), 0);
+  for (const TetFace& start : faces.boundary) {
+    if (known[static_cast<size_t>(start.tet)] != 0) continue;
+    std::vector<int32_t> part{start.tet};
+    std::map<int32_t, int64_t> votes;  // for what the first tet counts, by boundary faces
+    known[static_cast<size_t>(start.tet)] = 1;
+    for (size_t at = 0; at < part.size(); ++at) {
+      const auto tet = static_cast<size_t>(part[at]);
       for (size_t face = 0; face < 4; ++face) {
-        const int32_t across = faces.neighbors[static_cast<size_t>(tet)][face];
-        if (across < 0) continue;
-        const int64_t own = 4 * int64_t{tet} + static_cast<int64_t>(face);
-        // Of the lower tet less that of the upper one.
-        const int32_t step = own < across ? -crossing_of(own) : crossing_of(across);
-        const auto other = static_cast<size_t>(across / 4);
-        const int32_t wanted = inside_[static_cast<size_t>(tet)] + step;
-        if (known[other] != 0) {
-          open_faces_ += own < across && inside_[other] != wanted ? 1 : 0;
+        const auto own = static_cast<int64_t>(4 * tet + face);
+        const int32_t across = faces.neighbors[tet][face];
+        if (across < 0) {
+          ++votes[crossing_of(own) - inside_[tet]];
           continue;
         }
+        const auto other = static_cast<size_t>(across / 4);
+        if (known[other] != 0) continue;
         known[other] = 1;
-        inside_[other] = wanted;
-        queue.push_back(across / 4);
+        // Of the lower tet less that of the upper one.
+        inside_[other] = inside_[tet] + (own < across ? -crossing_of(own) : crossing_of(across));
+        part.push_back(across / 4);
       }
     }
+    // Where the render mesh bridges a crease of the body, it has no triangle at faces in it.
+    const auto most =
+        std::max_element(votes.begin(), votes.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    for (const int32_t tet : part) inside_[static_cast<size_t>(tet)] += most->first;
   }
+}
+
+void RenderHubs::FindGaps(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided) {
+  const auto nodes_of = [&](int64_t face) {
+    Triple outward{};
+    for (size_t k = 0; k < 3; ++k) {
+      const auto vertex = static_cast<size_t>(kTetFaces[static_cast<size_t>(face % 4)][k]);
+      outward[k] = mesh.tets[static_cast<size_t>(face / 4)][vertex];
+    }
+    return outward;
+  };
+  Crossings crossings;
+  std::map<Triple, int32_t> loose;  // as the ascending nodes turn
+  for (size_t i = 0; i < divided.mesh().triangles.size(); ++i) {
+    const Triple nodes = divided.LabelsOf(i);
+    if (nodes[0] == nodes[1] || nodes[1] == nodes[2] || nodes[2] == nodes[0]) continue;
+    const int64_t face = divided.FindFace(nodes);
+    int32_t& crossed = face < 0 ? loose[Sorted(nodes)] : crossings[face];
+    crossed += TurnsAs(nodes, face < 0 ? Sorted(nodes) : nodes_of(face)) ? 1 : -1;
+  }
+  FindInside(faces, crossings);
+  const auto add = [&](const Triple& nodes, int32_t turns, int64_t face) {
+    if (turns == 0) return;
+    const Triple turned{nodes[0], nodes[turns > 0 ? 1 : 2], nodes[turns > 0 ? 2 : 1]};
+    gaps_.push_back({turned, std::abs(turns), face, 0});
+  };
+  for (const auto& [nodes, crossed] : loose) add(nodes, crossed, -1);
+  for (size_t tet = 0; tet < inside_.size(); ++tet) {
+    for (size_t face = 0; face < 4; ++face) {
+      const auto own = static_cast<int64_t>(4 * tet + face);
+      const int32_t across = faces.neighbors[tet][face];
+      if (across >= 0 && across < own) continue;
+      const auto found = crossings.find(own);
+      const int32_t crossed = found == crossings.end() ? 0 : found->second;
+      const int32_t beyond = across < 0 ? 0 : inside_[static_cast<size_t>(across / 4)];
+      add(nodes_of(own), crossed - (inside_[tet] - beyond), own);
+    }
+  }
+  GroupGaps();
+}
+
+void RenderHubs::GroupGaps() {
+  std::vector<int32_t> root(gaps_.size());
+  for (size_t i = 0; i < root.size(); ++i) root[i] = static_cast<int32_t>(i);
+  const auto find = [&](int32_t gap) {
+    while (root[static_cast<size_t>(gap)] != gap) gap = root[static_cast<size_t>(gap)];
+    return gap;
+  };
+  std::map<Pair, int32_t> first;
+  for (size_t i = 0; i < gaps_.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      const Pair pair = Sorted(gaps_[i].nodes[k], gaps_[i].nodes[(k + 1) % 3]);
+      const auto own = static_cast<int32_t>(i);
+      const auto [low, high] =
+          std::minmax({find(own), find(first.try_emplace(pair, own).first->second)});
+      root[static_cast<size_t>(high)] = low;
+    }
+  }
+  std::map<int32_t, int32_t> groups;
+  for (size_t i = 0; i < gaps_.size(); ++i) {
+    const auto next = static_cast<int32_t>(groups.size());
+    gaps_[i].group = groups.try_emplace(find(static_cast<int32_t>(i)), next).first->second;
+  }
+  std::stable_sort(gaps_.begin(), gaps_.end(),
+                   [](const Gap& a, const Gap& b) { return a.group < b.group; });
 }
 
 }  // namespace cleave

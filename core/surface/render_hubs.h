@@ -22,6 +22,14 @@ class RenderHubs {
     int32_t count = 0;
     Vec3 place() const { return {sum[0] / count, sum[1] / count, sum[2] / count}; }
   };
+  // Three nodes at which the render mesh does not go round the tets as their faces do.
+  struct Gap {
+    DividedMesh::Triple
+        nodes{};        // as the render mesh turns there, or should were it closed by this
+    int32_t turns = 0;  // how often, > 0
+    int64_t face = -1;  // 4 * tet + face of the lower tet, -1: the nodes have none
+    int32_t group = 0;  // gaps that share two nodes are of one
+  };
 
   // Takes from its arguments what it needs.
   RenderHubs(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided);
@@ -35,17 +43,22 @@ class RenderHubs {
 
   // How often the render mesh goes round a tet: 1 or 0, but for odd meshes.
   int32_t inside(size_t tet) const { return inside_[tet]; }
-  // Faces of tets at which the render mesh does not go round the body as its boundary does.
-  int64_t open_faces() const { return open_faces_; }
+  // By groups. With the faces of the tets that it goes round, what the render mesh crosses is the
+  // boundary of nothing but them: of a closed render mesh, each group's gaps are closed themselves.
+  const std::vector<Gap>& gaps() const { return gaps_; }
 
  private:
+  using Crossings = std::map<int64_t, int32_t>;  // outward of the lower tet, by face
+
   void FindHubs(const DividedMesh& divided);
-  void FindInside(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided);
+  void FindInside(const Faces& faces, const Crossings& crossings);
+  void FindGaps(const TetMesh& mesh, const Faces& faces, const DividedMesh& divided);
+  void GroupGaps();
 
   std::map<DividedMesh::Pair, Hub> pairs_;
   std::map<DividedMesh::Triple, Hub> triples_;
   std::vector<int32_t> inside_;
-  int64_t open_faces_ = 0;
+  std::vector<Gap> gaps_;
 };
 
 }  // namespace cleave

@@ -31,6 +31,8 @@ enum Kind : uint64_t {
   kLooseTriple,
   kRenderOuter,
   kRenderCrack,
+  kRenderApex,
+  kRenderCap,
 };
 
 constexpr SurfaceId Make(Kind kind, uint64_t part, uint64_t low) {
@@ -43,6 +45,15 @@ constexpr uint64_t LowOf(SurfaceId id) { return id & 0xFF; }
 // Of a point that stands for another fan of triangles round the same point (fans.h), from 1 on.
 inline constexpr uint64_t kMaxFan = 0xFFF;
 constexpr SurfaceId OfFan(SurfaceId id, uint64_t fan) { return id | fan << 44; }
+// Where sheets that touch along an edge are parted (shared_edges.h): the point in the middle of
+// side k of a triangle with that id, and the parts of a triangle with points on the sides in
+// `mask`.
+constexpr SurfaceId OfHalf(SurfaceId triangle, size_t k) {
+  return triangle | static_cast<uint64_t>(k + 1) << 44;
+}
+constexpr SurfaceId OfPart(SurfaceId triangle, size_t mask, size_t part) {
+  return triangle | static_cast<uint64_t>(mask << 2 | part) << 44;
+}
 
 // Points. `first` is the first node on the copy's side, by its place in the edge, in the face as
 // the lower of its tets lists it, or in the tet. A face is 4 * tet + face of its lower tet.
@@ -70,6 +81,8 @@ constexpr SurfaceId OfLoosePair(size_t pair, size_t side) { return Make(kLoosePa
 constexpr SurfaceId OfLooseTriple(size_t triple, size_t first) {
   return Make(kLooseTriple, triple, first);
 }
+// Where gaps between a render mesh and the body are closed, on the side of node `first` of those.
+constexpr SurfaceId OfRenderApex(size_t first) { return Make(kRenderApex, first, 0); }
 
 // Triangles. Of a boundary face, 4 * tet + face: `corners` has bit i for corner i, 3 + i for the
 // middle between corner i and the next, 6 for the face point.
@@ -87,6 +100,10 @@ constexpr SurfaceId OfRenderOuter(size_t triangle, unsigned corners) {
 }
 constexpr SurfaceId OfRenderCrack(size_t triangle, size_t k, size_t side, size_t half) {
   return Make(kRenderCrack, triangle, k << 3 | side << 1 | half);
+}
+// Of what closes a gap, across its edge k on the side of corner `side`.
+constexpr SurfaceId OfRenderCap(size_t gap, size_t k, size_t side, size_t turn) {
+  return Make(kRenderCap, gap, turn << 4 | k << 2 | side);
 }
 
 }  // namespace surface_id

@@ -26,7 +26,8 @@ struct SurfacePoint {
 };
 
 // The visible surface of a broken mesh, independent of the motion of its nodes: closed, oriented,
-// every edge between exactly two triangles, pieces sharing no points. What it holds depends on the
+// every edge between exactly two triangles but where shared_edges.h has work, pieces sharing no
+// points. What it holds depends on the
 // mesh and its broken edges only, so client and server derive the same one, and so do those who
 // followed a run and those who join it: the same ids with the same records. Only places in the
 // arrays follow from how the edges came to break.

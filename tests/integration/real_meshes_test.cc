@@ -9,11 +9,17 @@
 #include "client/cpp/mesh_transfer.h"
 #include "client/io/mesh/mesh_file.h"
 #include "client/io/surface/surface_file.h"
+#include "core/base/counter_rng.h"
+#include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/quality.h"
 #include "core/mesh/surface_mesh.h"
+#include "core/surface/embedded_mesh.h"
+#include "core/surface/fans.h"
+#include "core/surface/shared_edges.h"
 #include "tests/integration/test_server.h"
+#include "tests/unit/core/surface/surface_checks.h"
 
 namespace cleave {
 namespace {
@@ -200,6 +206,41 @@ TEST(RealMeshes, SurfacesBecomeBodiesThatBreak) {
       EXPECT_GT(session.progress().broken_edges(), 0);
     }
   }
+}
+
+// Tets too coarse for the legs' and ears' creases, which the figurine itself bridges: its pieces
+// are closed 2-manifolds all the same.
+TEST(RealMeshes, AFigurineRoundACoarseBodyBreaksIntoManifolds) {
+  const auto surface = ReadSurfaceFile(PathOf("surface/koala_low_resolution.obj"));
+  ASSERT_TRUE(surface.ok()) << surface.status();
+  const RenderMesh render{surface->vertices, surface->triangles, surface->uvs};
+  ASSERT_EQ(CountOpenEdges(render.triangles), 0);
+  MeshResolution resolution;
+  resolution.cell_size = 0.8;
+  const auto body = MeshSurface(surface->vertices, surface->triangles, resolution);
+  ASSERT_TRUE(body.ok()) << body.status();
+  const Incidence incidence = BuildIncidence(body->mesh);
+  const Faces faces = BuildFaces(body->mesh);
+  EmbeddedMesh embedded(body->mesh, incidence, faces, render);
+  EXPECT_GT(embedded.gaps(), 0);
+  NamedPieces pieces(body->mesh, incidence);
+  for (const double share : {0.4, 0.9}) {
+    SCOPED_TRACE(share);
+    std::vector<int32_t> edges;
+    for (int32_t edge = 0; edge < incidence.edge_count(); ++edge) {
+      const double draw = UniformDraw(2, RandomStream::kEdgeDraw, static_cast<uint64_t>(edge), 0);
+      if (draw < share && draw >= share - 0.5) edges.push_back(edge);
+    }
+    pieces.Break(edges);
+    embedded.Break(edges, pieces);
+    SurfaceTopology topology = embedded.topology();
+    std::vector<CornerUvs> uvs = embedded.uvs();
+    std::vector<int32_t> sources = embedded.sources();
+    SeparateSharedEdges(topology, uvs, sources);
+    SeparateFans(topology);
+    ASSERT_NO_FATAL_FAILURE(ExpectManifold(topology));
+  }
+  EXPECT_GT(pieces.count(), 5);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ class Bake {
     timing_ = {frames_.count, first_.frame, last_.frame,
                first_.time,   last_.time,   options_.playback_rate};
     surface_ = BakeSurface(mesh_, incidence_, pieces, last_.broken_edges, options_.render_mesh);
-    result_.open_faces = surface_.open_faces;
+    result_.gaps = surface_.gaps;
     if (surface_.pieces.empty() || surface_.topology.triangles.empty()) {
       return absl::InvalidArgumentError("the mesh has no tets, so there are no pieces to bake");
     }

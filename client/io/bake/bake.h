@@ -42,7 +42,7 @@ struct BakeResult {
   int64_t kept = 0;               // frames that stood already, made from the same data
   std::string path;               // the file with the frames
   std::vector<std::string> also;  // the others
-  int64_t open_faces = 0;         // of a render mesh: EmbeddedMesh::open_faces
+  int64_t gaps = 0;               // of a render mesh: EmbeddedMesh::gaps
 };
 
 // Writes a run as one surface whose topology is the same in all frames (baked_surface.h), in the

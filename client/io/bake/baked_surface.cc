@@ -13,6 +13,7 @@
 #include "core/surface/embedded_mesh.h"
 #include "core/surface/faces.h"
 #include "core/surface/fans.h"
+#include "core/surface/shared_edges.h"
 #include "core/surface/visible_surface.h"
 
 namespace cleave {
@@ -70,10 +71,12 @@ BakedSurface BakeSurface(const TetMesh& mesh, const Incidence& incidence, const 
     embedded.Break(broken_edges, pieces);
     surface.topology = embedded.topology();
     surface.uvs = embedded.uvs();
-    surface.open_faces = embedded.open_faces();
+    surface.gaps = embedded.gaps();
   } else {
     surface.topology = ExtractSurface(mesh, incidence, faces, broken_edges, SurfaceOptions{});
   }
+  std::vector<int32_t> no_sources;
+  SeparateSharedEdges(surface.topology, surface.uvs, no_sources);
   SeparateFans(surface.topology);
   surface.pieces = FindPieces(mesh, pieces);
   const SurfaceTopology& topology = surface.topology;

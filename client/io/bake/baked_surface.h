@@ -37,7 +37,7 @@ struct BakedSurface {
   std::vector<int32_t> triangle_regions;
   std::vector<int32_t> point_pieces;
   std::vector<CornerUvs> uvs;  // of a render mesh, a triangle each; empty: it has none
-  int64_t open_faces = 0;      // of a render mesh: EmbeddedMesh::open_faces
+  int64_t gaps = 0;            // of a render mesh: EmbeddedMesh::gaps
 
   // Texture coordinates of a triangle's corner: its own on outer faces where there are any, else
   // RestUv.
@@ -61,8 +61,9 @@ class BakedMotion {
   BakedMotion(const BakedMotion&) = delete;
   BakedMotion& operator=(const BakedMotion&) = delete;
 
-  // Goes on to `frame`; frames come in order and may be left out. Errors: InvalidArgument for what
-  // CheckFrame refuses and for a broken edge that the last frame does not have.
+  // Goes on to `frame`; frames come in order, those that are not shown too: crumbs keep the turn of
+  // the last one before they came apart. Errors: InvalidArgument for what CheckFrame refuses and
+  // for a broken edge that the last frame does not have.
   absl::Status Advance(const Frame& frame);
 
   const std::vector<Vec3>& points() const { return moved_.points(); }  // m

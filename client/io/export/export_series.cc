@@ -38,8 +38,8 @@ std::string PotencyName(const std::vector<double>& potencies) {
   return absl::StrCat(hash.Digest());
 }
 
-int64_t OpenFacesOf(const SurfaceSequence& sequence) {
-  return sequence.embedded() == nullptr ? 0 : sequence.embedded()->open_faces();
+int64_t GapsOf(const SurfaceSequence& sequence) {
+  return sequence.embedded() == nullptr ? 0 : sequence.embedded()->gaps();
 }
 
 // What series carry beside positions, from options for the lot.
@@ -103,9 +103,9 @@ class SeriesWriter {
     return WriteAside(result_.collection, bytes);
   }
 
-  ExportResult result(int64_t open_faces) const {
+  ExportResult result(int64_t gaps) const {
     ExportResult result = result_;
-    result.open_faces = open_faces;
+    result.gaps = gaps;
     return result;
   }
 
@@ -162,7 +162,7 @@ absl::StatusOr<ExportResult> WriteVtuSeries(const TetMesh& mesh, const FrameSour
   const absl::Status collected = writer.WriteCollection();
   CLEAVE_RETURN_IF_ERROR(written);
   CLEAVE_RETURN_IF_ERROR(collected);
-  return writer.result(OpenFacesOf(sequence));
+  return writer.result(GapsOf(sequence));
 }
 
 absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSource& frames,
@@ -177,7 +177,7 @@ absl::StatusOr<ExportResult> WritePlySeries(const TetMesh& mesh, const FrameSour
   };
   SeriesWriter writer(mesh, options, "ply", "ply");
   CLEAVE_RETURN_IF_ERROR(writer.Write(frames, format, progress));
-  return writer.result(OpenFacesOf(sequence));
+  return writer.result(GapsOf(sequence));
 }
 
 absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSource& frames,
@@ -200,7 +200,7 @@ absl::StatusOr<ExportResult> WriteObjSeries(const TetMesh& mesh, const FrameSour
                                         ? look.material_file
                                         : absl::StrCat(options.folder, "/", look.material_file),
                                     EncodeMtl(materials)));
-  return writer.result(OpenFacesOf(sequence));
+  return writer.result(GapsOf(sequence));
 }
 
 }  // namespace cleave

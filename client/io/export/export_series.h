@@ -31,7 +31,7 @@ struct ExportResult {
   int64_t written = 0;     // files
   int64_t kept = 0;        // files that stood already, made from the same data
   std::string collection;  // path of the .pvd; empty for PLY and OBJ
-  int64_t open_faces = 0;  // of a render mesh: EmbeddedMesh::open_faces
+  int64_t gaps = 0;        // of a render mesh: EmbeddedMesh::gaps
 };
 
 // Writes a file a frame and a ParaView collection of them. A frame's file does not depend on which

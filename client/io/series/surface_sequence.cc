@@ -16,6 +16,7 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/surface/fans.h"
+#include "core/surface/shared_edges.h"
 
 namespace cleave {
 namespace {
@@ -135,10 +136,13 @@ void SurfaceSequence::Follow(const Frame& frame) {
   if (embedded_) {
     embedded_->Break(edges, *pieces_);
     topology_ = embedded_->topology();
+    uvs_ = embedded_->uvs();
+    sources_ = embedded_->sources();
   } else {
     surface_->Break(edges);
     topology_ = surface_->topology();
   }
+  SeparateSharedEdges(topology_, uvs_, sources_);
   SeparateFans(topology_);
   is_stale_ = true;
 }
@@ -159,7 +163,7 @@ void SurfaceSequence::Show() {
   const size_t triangles = topology.triangles.size();
   shown_.triangles = topology.triangles;
   shown_.inside = topology.inside;
-  if (embedded_) shown_.uvs = embedded_->uvs();
+  shown_.uvs = uvs_;
   shown_.pieces.resize(triangles);
   shown_.regions.resize(triangles);
   for (size_t i = 0; i < triangles; ++i) {
@@ -177,7 +181,7 @@ void SurfaceSequence::FindSources() {
   for (size_t i = 0; i < shown_.sources.size(); ++i) {
     if (topology().inside[i] != 0) continue;
     shown_.sources[i] = embedded_
-                            ? int64_t{embedded_->sources()[i]}
+                            ? int64_t{sources_[i]}
                             : static_cast<int64_t>(surface_id::PartOf(topology().triangle_ids[i]));
   }
 }

@@ -57,7 +57,7 @@ class SurfaceSequence {
   // before, 0 in the first.
   // Damages are means over all tets at the nodes on a point's side; potencies are interpolated.
   const ShownSurface& surface() const { return shown_; }
-  // Its sheets share no point where they only touch (fans.h).
+  // Its sheets share no edge and no point where they only touch (shared_edges.h, fans.h).
   const SurfaceTopology& topology() const { return topology_; }
   // Where there is a render mesh: how it is bound to the body. Else null.
   const EmbeddedMesh* embedded() const { return embedded_ ? &*embedded_ : nullptr; }
@@ -101,7 +101,9 @@ class SurfaceSequence {
   std::vector<int32_t> broken_edges_;
   std::optional<VisibleSurface> surface_;  // or, where there is a render mesh,
   std::optional<EmbeddedMesh> embedded_;
-  SurfaceTopology topology_;  // of either
+  SurfaceTopology topology_;      // of either
+  std::vector<CornerUvs> uvs_;    // of the render mesh, a triangle each
+  std::vector<int32_t> sources_;  // the same
   std::optional<NamedPieces> pieces_;
   std::vector<int32_t> node_pieces_;
   ShownSurface shown_;

@@ -3,36 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <vector>
 
+#include "core/surface/shared_edges.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/surface/surface_checks.h"
 
 namespace cleave {
 namespace {
-
-// How many points lie in more than one fan: whoever walks round such a point from edge to edge is
-// back before all of its triangles were seen. Precondition: ExpectClosedOrientedPieces.
-int64_t PointsOfManyFans(const SurfaceTopology& surface) {
-  std::vector<std::map<int32_t, int32_t>> next(surface.points.size());
-  for (const auto& triangle : surface.triangles) {
-    for (size_t k = 0; k < 3; ++k)
-      next[static_cast<size_t>(triangle[k])][triangle[(k + 1) % 3]] = triangle[(k + 2) % 3];
-  }
-  int64_t many = 0;
-  for (const auto& round : next) {
-    size_t seen = 0;
-    int32_t at = round.begin()->first;
-    do {
-      at = round.at(at);
-      ++seen;
-    } while (at != round.begin()->first);
-    if (seen < round.size()) ++many;
-  }
-  return many;
-}
 
 std::map<SurfaceId, std::vector<SurfaceId>> PointsByTriangle(const SurfaceTopology& surface) {
   std::map<SurfaceId, std::vector<SurfaceId>> points;
@@ -99,6 +80,44 @@ TEST(Fans, HaveTheSameIdsHoweverTheSurfaceCameToBe) {
   SeparateFans(grown);
   ASSERT_GT(grown.points.size(), points);
   EXPECT_EQ(PointsByTriangle(at_once), PointsByTriangle(grown));
+}
+
+TEST(Fans, OfTetsJoinedByAnEdgeAreParted) {
+  TetMesh mesh;
+  mesh.rest_positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  mesh.tets = {{0, 2, 3, 1}, {0, 4, 5, 1}};
+  const SurfaceCase pair(mesh);
+  BrokenSurface surface = pair.Extract({});
+  ASSERT_EQ(SharedEdges(surface), 2);  // there and back
+  std::vector<CornerUvs> uvs(8, CornerUvs{{{0, 0}, {1, 0}, {0, 1}}});
+  std::vector<int32_t> sources{0, 1, 2, 3, 4, 5, 6, 7};
+  SeparateSharedEdges(surface, uvs, sources);
+  SeparateFans(surface);
+  ASSERT_NO_FATAL_FAILURE(ExpectManifold(surface));
+  // Either tet is closed by itself, one of them with a point in the middle of the edge.
+  ASSERT_EQ(surface.points.size(), 9u);
+  EXPECT_EQ(surface.points[6].rest, (Vec3{0, 0, 0.5}));
+  EXPECT_EQ(surface.points[6].node_count, 2);
+  EXPECT_TRUE(surface.points[6].owned_by_all());
+  ASSERT_EQ(surface.triangles.size(), 10u);
+  ASSERT_EQ(uvs.size(), 10u);
+  ASSERT_EQ(sources.size(), 10u);
+  std::map<int32_t, int> triangles_of_tet, parts_of_source;
+  std::map<int32_t, std::set<int32_t>> tets_of_point;
+  for (size_t i = 0; i < 10; ++i) {
+    ++triangles_of_tet[surface.tets[i]];
+    ++parts_of_source[sources[i]];
+    for (const int32_t point : surface.triangles[i]) tets_of_point[point].insert(surface.tets[i]);
+    // The middle of a side has the middle of its texture coordinates.
+    for (size_t k = 0; k < 3; ++k) {
+      const bool is_half = surface.triangles[i][k] == 6;
+      EXPECT_EQ(uvs[i][k][0] == 0.5f || uvs[i][k][1] == 0.5f, is_half);
+    }
+  }
+  EXPECT_EQ(triangles_of_tet[0] + triangles_of_tet[1], 10);
+  EXPECT_EQ(std::abs(triangles_of_tet[0] - triangles_of_tet[1]), 2);
+  EXPECT_EQ(parts_of_source.size(), 8u);
+  for (const auto& [point, tets] : tets_of_point) EXPECT_EQ(tets.size(), 1u) << point;
 }
 
 }  // namespace

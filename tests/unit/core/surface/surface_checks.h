@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "core/base/counter_rng.h"
+#include "core/mesh/render_mesh.h"
 #include "core/surface/fragments.h"
 #include "core/surface/visible_surface.h"
 
@@ -104,6 +107,63 @@ inline void ExpectClosedOrientedPieces(const BrokenSurface& surface) {
     ASSERT_TRUE(uses.contains({edge.second, edge.first})) << edge.first << " " << edge.second;
   for (size_t point = 0; point < fragment_of.size(); ++point)
     ASSERT_NE(fragment_of[point], -1) << "point " << point << " is in no triangle";
+}
+
+// How many points lie in more than one fan: whoever walks round such a point from edge to edge is
+// back before all of its triangles were seen. Precondition: every directed edge lies in one
+// triangle and its reverse in another.
+inline int64_t PointsOfManyFans(const SurfaceTopology& surface) {
+  // The two other corners of each triangle at a point, in its order.
+  std::vector<std::vector<std::pair<int32_t, int32_t>>> rounds(surface.points.size());
+  for (const auto& triangle : surface.triangles) {
+    for (size_t k = 0; k < 3; ++k)
+      rounds[static_cast<size_t>(triangle[k])].emplace_back(triangle[(k + 1) % 3],
+                                                            triangle[(k + 2) % 3]);
+  }
+  int64_t many = 0;
+  for (const auto& round : rounds) {
+    size_t seen = 0;
+    int32_t at = round.front().first;
+    do {
+      at = std::find_if(round.begin(), round.end(), [&](const auto& next) {
+             return next.first == at;
+           })->second;
+      ++seen;
+    } while (at != round.front().first);
+    if (seen < round.size()) ++many;
+  }
+  return many;
+}
+
+// Directed edges that lie in more than one triangle.
+inline int64_t SharedEdges(const SurfaceTopology& surface) {
+  std::vector<std::pair<int32_t, int32_t>> edges;
+  for (const auto& triangle : surface.triangles) {
+    for (size_t k = 0; k < 3; ++k) edges.emplace_back(triangle[k], triangle[(k + 1) % 3]);
+  }
+  std::sort(edges.begin(), edges.end());
+  int64_t shared = 0;
+  for (size_t i = 1; i < edges.size(); ++i) {
+    const bool is_first = i == 1 || edges[i - 1] != edges[i - 2];
+    shared += edges[i] == edges[i - 1] && is_first ? 1 : 0;
+  }
+  return shared;
+}
+
+inline bool AreApart(std::vector<SurfaceId> ids) {
+  std::sort(ids.begin(), ids.end());
+  return std::adjacent_find(ids.begin(), ids.end()) == ids.end();
+}
+
+// Every directed edge in one triangle, its reverse in another, one fan round each point, ids apart.
+inline void ExpectManifold(const SurfaceTopology& surface) {
+  ASSERT_EQ(SharedEdges(surface), 0);
+  ASSERT_EQ(CountOpenEdges(surface.triangles), 0);
+  ASSERT_EQ(PointsOfManyFans(surface), 0);
+  ASSERT_EQ(surface.triangle_ids.size(), surface.triangles.size());
+  ASSERT_EQ(surface.point_ids.size(), surface.points.size());
+  ASSERT_TRUE(AreApart(surface.triangle_ids));
+  ASSERT_TRUE(AreApart(surface.point_ids));
 }
 
 }  // namespace cleave

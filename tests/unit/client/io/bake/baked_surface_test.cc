@@ -147,7 +147,7 @@ TEST_F(BakedSurfaceTest, ARenderMeshIsSplitOnceAndOpensWhereTheBodyCracks) {
   }
   const BakedSurface baked = BakeSurface(mesh_, incidence_, PiecesOfBar(mesh_, incidence_, 6),
                                          last_.broken_edges, &render);
-  EXPECT_EQ(baked.open_faces, 0);
+  EXPECT_EQ(baked.gaps, 0);
   EXPECT_EQ(CountOpenEdges(baked.topology.triangles), 0);
   EXPECT_EQ(std::set<int32_t>(baked.point_pieces.begin(), baked.point_pieces.end()),
             (std::set<int32_t>{0, 1}));

@@ -286,7 +286,7 @@ TEST_F(ExportSeriesTest, ARenderMeshIsWrittenWithItsTextureCoordinatesAndInsideF
   const auto result = WriteObjSeries(mesh, FlyingTip(mesh), options_, {});
   ASSERT_TRUE(result.ok()) << result.status();
   EXPECT_EQ(result->written, 5);
-  EXPECT_EQ(result->open_faces, 0);
+  EXPECT_EQ(result->gaps, 0);
   const std::string whole = ReadWhole("run_000000.obj");
   EXPECT_THAT(whole, HasSubstr("vt 0.125 0.25\n"));
   EXPECT_EQ(whole.find("vt ", whole.find("vt ") + 1), std::string::npos);  // one for all corners

@@ -131,7 +131,7 @@ TEST(SurfaceSequence, ARenderMeshStandsForTheSurfaceAndBreaksWithThePieces) {
   Frame frame = AtRest(mesh);
   ASSERT_TRUE(sequence.Advance(frame).ok());
   EXPECT_THAT(sequence.surface().inside, Each(0));
-  EXPECT_EQ(sequence.embedded()->open_faces(), 0);
+  EXPECT_EQ(sequence.embedded()->gaps(), 0);
   frame.time = 1;
   frame.broken_edges = EdgesAtTip(mesh);
   frame.positions[4][2] += 2;
