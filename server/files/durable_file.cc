@@ -66,7 +66,7 @@ absl::StatusOr<std::string> ReadAt(const FileDescriptor& file, int64_t offset, i
   // The size may come from a damaged record: nothing is allocated that the file cannot fill.
   CLEAVE_ASSIGN_OR_RETURN(const int64_t file_size, FileSize(file, path));
   if (offset < 0 || size < 0 || offset > file_size || size > file_size - offset) {
-    return absl::OutOfRangeError(
+    return absl::DataLossError(
         absl::StrCat(path, " ends at byte ", file_size, ", before ", size, " bytes at ", offset));
   }
   std::string bytes(static_cast<size_t>(size), '\0');
@@ -78,7 +78,7 @@ absl::StatusOr<std::string> ReadAt(const FileDescriptor& file, int64_t offset, i
       if (errno == EINTR) continue;
       return SystemError("read", path);
     }
-    if (got == 0) return absl::OutOfRangeError(absl::StrCat(path, " became shorter"));
+    if (got == 0) return absl::DataLossError(absl::StrCat(path, " became shorter"));
     done += static_cast<size_t>(got);
   }
   return bytes;

@@ -37,7 +37,8 @@ absl::StatusOr<FileDescriptor> OpenFile(const std::string& path, int flags);
 // Writes all of `bytes` at `offset`.
 absl::Status WriteAt(const FileDescriptor& file, int64_t offset, absl::string_view bytes,
                      absl::string_view path);
-// Reads exactly `size` bytes at `offset`; OutOfRange when the file ends before them.
+// Reads exactly `size` bytes at `offset`; DataLoss when the file ends before them: it was cut, or
+// whoever says that they are there is damaged.
 absl::StatusOr<std::string> ReadAt(const FileDescriptor& file, int64_t offset, int64_t size,
                                    absl::string_view path);
 absl::StatusOr<int64_t> FileSize(const FileDescriptor& file, absl::string_view path);

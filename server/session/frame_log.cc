@@ -87,8 +87,7 @@ absl::StatusOr<bool> FrameLogWriter::LastIsWhole() const {
 }
 
 bool IsLogDamage(const absl::Status& error) {
-  return absl::IsNotFound(error) || absl::IsOutOfRange(error) || absl::IsDataLoss(error) ||
-         absl::IsUnimplemented(error);
+  return absl::IsNotFound(error) || absl::IsDataLoss(error) || absl::IsUnimplemented(error);
 }
 
 absl::StatusOr<std::string> FrameLogWriter::ReadFrame(const IndexRow& row) const {

@@ -23,16 +23,16 @@ TEST(DurableFileTest, AFileThatIsTooLargeIsRefusedBeforeItIsRead) {
   EXPECT_TRUE(absl::IsNotFound(ReadFile(directory / "g", 4).status()));
 }
 
-TEST(DurableFileTest, ALyingSizeOrOffsetIsOutOfRangeAndAllocatesNothing) {
+TEST(DurableFileTest, AFileThatEndsTooEarlyIsDataLossAndAllocatesNothing) {
   TemporaryDirectory directory;
   ASSERT_TRUE(WriteFileDurably(directory / "f", "12345").ok());
   absl::StatusOr<FileDescriptor> file = OpenFile(directory / "f", O_RDONLY);
   ASSERT_TRUE(file.ok());
   EXPECT_EQ(*ReadAt(*file, 1, 3, "f"), "234");
-  EXPECT_TRUE(absl::IsOutOfRange(ReadAt(*file, 1, int64_t{1} << 60, "f").status()));
-  EXPECT_TRUE(absl::IsOutOfRange(ReadAt(*file, int64_t{1} << 60, 1, "f").status()));
-  EXPECT_TRUE(absl::IsOutOfRange(ReadAt(*file, -1, 1, "f").status()));
-  EXPECT_TRUE(absl::IsOutOfRange(ReadAt(*file, 0, -1, "f").status()));
+  EXPECT_TRUE(absl::IsDataLoss(ReadAt(*file, 1, int64_t{1} << 60, "f").status()));
+  EXPECT_TRUE(absl::IsDataLoss(ReadAt(*file, int64_t{1} << 60, 1, "f").status()));
+  EXPECT_TRUE(absl::IsDataLoss(ReadAt(*file, -1, 1, "f").status()));
+  EXPECT_TRUE(absl::IsDataLoss(ReadAt(*file, 0, -1, "f").status()));
 }
 
 TEST(DurableFileTest, ErrorsNameThePath) {

@@ -8,6 +8,7 @@
 
 #include "core/stream/stream_header.h"
 #include "server/files/durable_file.h"
+#include "server/worker/failure.h"
 #include "tests/unit/temporary_directory.h"
 
 namespace cleave {
@@ -136,6 +137,23 @@ TEST_F(RungLogTest, ASessionThatCannotBeReadCostsNoRung) {
   EXPECT_FALSE(Open().ok());
   WriteBytes(paths_.frames() + "/00000000.clv", kept);
   EXPECT_EQ(EncodeTo(kHead), 4);
+}
+
+TEST_F(RungLogTest, FramesThatAreTornAreReportedAsADamagedSession) {
+  auto log = Open();
+  ASSERT_TRUE(log.ok()) << log.status();
+  ASSERT_TRUE((*log)->Follow(kHead).ok());
+  const std::string segment = paths_.frames() + "/00000000.clv";
+  WriteBytes(segment, ReadBytes(segment).substr(0, 300));
+  absl::Status torn;
+  while (torn.ok() && (*log)->behind()) torn = (*log)->EncodeNext();
+  const v1::Error error = FailureOf(torn);
+  EXPECT_EQ(error.reason(), "SESSION_DAMAGED");
+  EXPECT_EQ(error.code(), static_cast<int>(absl::StatusCode::kDataLoss));
+  EXPECT_NE(error.message().find(segment + " ends at byte 300, before "), std::string::npos)
+      << error.message();
+  // What the encoder cannot hold is the solver's.
+  EXPECT_EQ(FailureOf(absl::OutOfRangeError("POSITION_OUT_OF_RANGE")).reason(), "SOLVER_DIVERGED");
 }
 
 }  // namespace
