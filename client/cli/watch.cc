@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -65,7 +67,20 @@ absl::Status Record(Client& client, Interrupt& interrupt, const Options& options
   if (result->interrupted && result->end.reason() == v1::END_REASON_UNSPECIFIED)
     return absl::CancelledError(absl::StrCat("left ", follow.session, " after frame ",
                                              result->last_frame, "; it goes on without a viewer"));
-  return StatusOfEnd(follow.session, result->end);
+  CLEAVE_RETURN_IF_ERROR(StatusOfEnd(follow.session, result->end));
+  if (result->last_frame < options.from)
+    return absl::OutOfRangeError(absl::StrCat("--from: ", options.session, " ended at frame ",
+                                              result->last_frame, ", before ", options.from));
+  return absl::OkStatus();
+}
+
+// A run that goes on may come to the frame; one that rests does not, and has nothing to show.
+absl::Status CheckFrom(const Options& options, const v1::Session& session) {
+  const bool rests = session.state() == v1::SESSION_STATE_IDLE;
+  const int64_t head = std::max<int64_t>(session.head_frame(), 0);  // made for its first viewer
+  if (!rests || options.run || options.stay || options.from <= head) return absl::OkStatus();
+  return absl::OutOfRangeError(absl::StrCat("--from: ", options.from, " is outside [0, ", head,
+                                            "]: ", options.session, " rests at frame ", head));
 }
 
 absl::Status Watch(Program& program, const Options& options) {
@@ -73,6 +88,7 @@ absl::Status Watch(Program& program, const Options& options) {
   CLEAVE_ASSIGN_OR_RETURN(const std::unique_ptr<Client> client,
                           ConnectServer(options.server, program.interrupt));
   CLEAVE_ASSIGN_OR_RETURN(v1::Session session, client->GetSession(SessionName(options.session)));
+  CLEAVE_RETURN_IF_ERROR(CheckFrom(options, session));
   const int64_t head = session.head_frame();
   const v1::Scene scene = session.scene();
   if (options.run) {
@@ -108,7 +124,9 @@ void AddWatch(CLI::App& app, Program& program) {
                                       "events.jsonl, scene.textproto and, of a "
                                       "scene that has one, render_mesh.pb")
                          ->type_name("DIR");
-  verb->add_option("--from", options->from, "First frame; the newest key frame at or before it")
+  verb->add_option("--from", options->from,
+                   "First frame; the newest key frame at or before it. One that a run has yet to "
+                   "come to is waited for; beyond the end of one that rests it is refused")
       ->check(CountWithin(0, int64_t{1} << 40))
       ->type_name("FRAME");
   AddAccuracyOptions(*verb, options->accuracy, "of what is sent", "all that the session keeps");

@@ -28,6 +28,12 @@ class Server(CliTest):
         self.assertEqual([json.loads(line)["frame"] for line in output.splitlines()],
                          list(range(7)))
         self.assertEqual(cleave("export", out, "--format", "ply", "--last", "0")[0], 0)
+        code, output, errors = self.ask("watch", "block", "--from", "5", "--json")
+        self.assertEqual(code, 0, errors)
+        self.assertEqual(json.loads(output.splitlines()[-1])["frame"], 6)
+        code, output, errors = self.ask("watch", "block", "--from", "7", "--json")
+        self.assertEqual((code, output), (3, ""), errors)
+        self.assertIn("--from: 7 is outside [0, 6]: block rests at frame 6", errors)
         code, output, _ = self.ask("list", "--json")
         self.assertEqual([json.loads(line)["name"] for line in output.splitlines()],
                          ["sessions/block"])
@@ -97,7 +103,7 @@ class Server(CliTest):
         self.assertAlmostEqual(first["outside_tolerance"] / first["tolerance"], 10)
         code, _, errors = self.ask(*region, "--region-box", 0, 0, 0, -1, 1, 1)
         self.assertEqual(code, 3, errors)
-        self.assertIn("region.box: from 0 to -1 m", errors)
+        self.assertIn("region.box.max: (-1, 1, 1) m is outside [0, inf) along x", errors)
         self.assertEqual(self.ask("watch", "fine", "--region-node", 0, "--outside", "far")[0], 2)
         self.assertEqual(self.ask("watch", "fine", "--outside", "preview")[0], 3)
         self.assertEqual(self.ask("watch", "fine", "--rung", "fine", "--tolerance", 1)[0], 2)
