@@ -218,6 +218,19 @@ TEST(RungsTest, ADamagedLogOfARungIsMadeAgain) {
   EXPECT_EQ(TakeAll(*server.Connect(), Rung::kPreview), UndisturbedPreview());
 }
 
+TEST(RungsTest, ARungThatCannotBeBegunSaysThatItHasNoFrame) {
+  TestServer server;
+  const std::unique_ptr<Client> client = server.Connect();
+  Create(*client, "bar", BreakingBar(kKeyframeInterval));
+  RunToEnd(*client, "bar");
+  WriteBytes(server.session_directory("bar") + "/rungs", "no folder");
+  FrameStream stream(*client, Asking(Rung::kPreview));
+  const absl::Status refused = stream.Open();
+  EXPECT_EQ(refused.code(), absl::StatusCode::kInternal);
+  EXPECT_THAT(std::string(refused.message()),
+              HasSubstr("the rung preview of sessions/bar has no frame: "));
+}
+
 TEST(RungsTest, WhoWantsTheLatestSkipsToTheNewestKeyFrame) {
   TestServer server;
   const std::unique_ptr<Client> client = server.Connect();

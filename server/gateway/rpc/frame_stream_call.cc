@@ -94,7 +94,9 @@ absl::Status FrameStreamCall::Refresh(const HostedSession::State& state) {
   if (head_ < session()->frames().head() && !rung.failure.ok()) {
     return MakeError(absl::StatusCode::kInternal, "RUNG_FAILED",
                      absl::StrCat("the rung ", encoding_, " of ", session()->name(),
-                                  " ends at frame ", head_, ": ", rung.failure.message()));
+                                  head_ < 0 ? absl::StrCat(" has no frame")
+                                            : absl::StrCat(" ends at frame ", head_),
+                                  ": ", rung.failure.message()));
   }
   return frames().Refresh(head_);
 }
