@@ -1,8 +1,11 @@
 #include "server/gateway/frame_choice.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "core/base/status.h"
 #include "proto/convert/rung.h"
 #include "server/gateway/errors.h"
@@ -39,10 +42,16 @@ void CheckRegion(const v1::RegionOfInterest& region, Faults& faults) {
     if (low.size() != 3 || high.size() != 3) {
       faults.Error("region.box", "min and max have three coordinates each");
     } else {
+      std::vector<std::string> allowed;
       for (int axis = 0; axis < 3; ++axis) {
         if (low[axis] <= high[axis]) continue;
-        faults.Error("region.box",
-                     absl::StrCat("from ", low[axis], " to ", high[axis], " m has no inside"));
+        allowed.push_back(
+            absl::StrCat("[", low[axis], ", inf) along ", std::string(1, "xyz"[axis])));
+      }
+      if (!allowed.empty()) {
+        faults.Error("region.box.max",
+                     absl::StrCat("(", absl::StrJoin(high, ", "), ") m is outside ",
+                                  absl::StrJoin(allowed, ", "), ", where region.box.min begins"));
       }
     }
   }

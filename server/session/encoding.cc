@@ -1,7 +1,9 @@
 #include "server/session/encoding.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
@@ -28,8 +30,13 @@ worker::v1::Encoding EncodingOfRegion(const v1::RegionOfInterest& region, double
   worker::v1::Encoding encoding;
   encoding.set_tolerance(inside - kept.tolerance);
   encoding.set_surface(surface);
-  *encoding.mutable_region() = region;
-  encoding.mutable_region()->set_outside_tolerance(outside - kept.tolerance);
+  std::vector<int32_t> nodes(region.nodes().begin(), region.nodes().end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  encoding.mutable_region()->mutable_nodes()->Add(nodes.begin(), nodes.end());
+  if (region.has_box()) *encoding.mutable_region()->mutable_box() = region.box();
+  const int power = std::ilogb((outside - kept.tolerance) / encoding.tolerance());
+  encoding.mutable_region()->set_outside_tolerance(std::ldexp(encoding.tolerance(), power));
   encoding.set_name(
       absl::StrCat(kRegionPrefix,
                    absl::BytesToHexString(Sha256::Of(encoding.SerializeAsString())).substr(0, 16)));

@@ -21,7 +21,9 @@ absl::StatusOr<worker::v1::Encoding> EncodingOfRung(Rung rung, bool surface,
                                                     const StreamHeader& kept);
 
 // A region with these tolerances (m) against the simulation; the name follows from all of it.
-// Precondition: inside is at least twice kept.tolerance and above 0, outside at least twice inside.
+// Requests whose frames would be the same give the same: nodes are sorted, and outside is as fine
+// as frames can have it, a power of two times what is inside. Precondition: inside is at least
+// twice kept.tolerance and above 0, outside at least twice inside.
 worker::v1::Encoding EncodingOfRegion(const v1::RegionOfInterest& region, double inside,
                                       double outside, bool surface, const StreamHeader& kept);
 

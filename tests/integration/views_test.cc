@@ -174,7 +174,8 @@ TEST(ViewsTest, RegionsThatCannotBeAreRefusedWithEveryFault) {
   for (int i = 0; i < 3; ++i) region.mutable_box()->add_min(1);
   EXPECT_THAT(refusal(std::nullopt, region), HasSubstr("region.box: min and max have three"));
   for (int i = 0; i < 3; ++i) region.mutable_box()->add_max(i);
-  EXPECT_THAT(refusal(std::nullopt, region), HasSubstr("region.box: from 1 to 0 m"));
+  EXPECT_THAT(refusal(std::nullopt, region),
+              HasSubstr("region.box.max: (0, 1, 2) m is outside [1, inf) along x, where"));
   FrameStream stream(*client, Looking(std::nullopt, WithNode(0)));
   ASSERT_TRUE(stream.Open().ok());
   EXPECT_GE(stream.outside_tolerance(), 2 * stream.tolerance());
