@@ -238,6 +238,13 @@ class Bake {
       if (position == 0) {
         motion = std::make_unique<BakedMotion>(mesh_, incidence_, surface_, last_.broken_edges);
       }
+      if (frames_.pass_by) {
+        // A crumb keeps the turn that it had last, and velocities are since the frame before.
+        CLEAVE_RETURN_IF_ERROR(frames_.pass_by(position, [&](const Frame& left_out) {
+          key.Add(left_out);
+          return motion->Advance(left_out);
+        }));
+      }
       CLEAVE_ASSIGN_OR_RETURN(const Frame frame, frames_.read(position));
       CLEAVE_RETURN_IF_ERROR(motion->Advance(frame));
       key.Add(frame);

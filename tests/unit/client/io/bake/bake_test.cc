@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,7 @@
 #include "absl/strings/str_split.h"
 #include "client/io/bake/baked_surface.h"
 #include "core/base/bytes.h"
+#include "core/base/status.h"
 #include "tests/unit/client/io/bake/breaking_bar.h"
 #include "tests/unit/temporary_directory.h"
 
@@ -402,6 +404,52 @@ TEST_F(BakeTest, ACutBakeGoesOnToTheSameBytes) {
       EXPECT_EQ(Write(format).kept, kFrames) << name;
       std::filesystem::remove_all(options_.folder);
     }
+  }
+}
+
+// A node keeps the turn that it had when its last tet came apart: that of a frame which a bake may
+// leave out.
+TEST_F(BakeTest, AFrameIsTheSameWhicheverFramesAreLeftOut) {
+  constexpr int64_t kLast = 4;
+  const auto turned = [this](int64_t number) {
+    Frame frame = BarFrame(mesh_, kFrames - 1);
+    frame.frame = number;
+    frame.time = 0.1 * static_cast<double>(number);
+    frame.positions = mesh_.rest_positions;
+    for (int64_t turn = 0; turn < number; ++turn) {
+      for (Vec3& position : frame.positions) position = {position[0], -position[2], position[1]};
+    }
+    frame.broken_edges.clear();
+    if (number < 3) return frame;
+    const auto edges = incidence_.node_edges[0];
+    frame.broken_edges.assign(edges.begin(), edges.end());
+    std::sort(frame.broken_edges.begin(), frame.broken_edges.end());
+    return frame;
+  };
+  FrameSource all;
+  all.count = kLast + 1;
+  all.read = turned;
+  FrameSource ends;  // of the same run
+  ends.count = 2;
+  ends.read = [&](int64_t position) { return turned(position * kLast); };
+  ends.pass_by = [&](int64_t position, const FrameSource::Visit& visit) -> absl::Status {
+    for (int64_t number = 1; position == 1 && number < kLast; ++number)
+      CLEAVE_RETURN_IF_ERROR(visit(turned(number)));
+    return absl::OkStatus();
+  };
+  options_.velocities = true;
+  options_.format = BakeFormat::kPc2;
+  const auto last_of = [&](const FrameSource& frames, const std::string& name) {
+    const auto result = WriteBake(mesh_, frames, options_, nullptr);
+    EXPECT_TRUE(result.ok()) << result.status();
+    const std::string bytes = Bytes(name);
+    return bytes.substr(bytes.size() - (bytes.size() - 32) / static_cast<size_t>(frames.count));
+  };
+  for (const std::string name : {"bar.pc2", "bar.velocity.pc2"}) {
+    SCOPED_TRACE(name);
+    const std::string whole = last_of(all, name);
+    EXPECT_EQ(whole.size() % 12, 0u);
+    EXPECT_TRUE(last_of(ends, name) == whole);  // not EXPECT_EQ, which would print them
   }
 }
 
