@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -87,12 +88,13 @@ void DividedMesh::Place(size_t first) {
                   const size_t point = first + static_cast<size_t>(i);
                   places_[point] = locator_.Locate(render_.points[point]);
                   const auto& nodes = mesh_.tets[static_cast<size_t>(places_[point].tet)];
-                  size_t most = 0;
-                  for (size_t k = 1; k < 4; ++k) {
-                    const double more = places_[point].weights[k] - places_[point].weights[most];
-                    if (more > 0 || (more == 0 && nodes[k] < nodes[most])) most = k;
+                  const std::array<double, 4>& weights = places_[point].weights;
+                  const double enough =
+                      *std::max_element(weights.begin(), weights.end()) - TetLocator::kWeightSlack;
+                  labels_[point] = std::numeric_limits<int32_t>::max();
+                  for (size_t k = 0; k < 4; ++k) {
+                    if (weights[k] >= enough) labels_[point] = std::min(labels_[point], nodes[k]);
                   }
-                  labels_[point] = nodes[most];
                 }
               });
 }

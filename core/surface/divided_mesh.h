@@ -15,10 +15,11 @@
 namespace cleave {
 
 // A render mesh divided so that it can come apart as a body does. Every point goes with the tet
-// that it lies in, or the one of the nearest boundary face, and belongs to the node that weighs
-// most there. No edge is longer than half the tets' mean edge, and, but for what some rounds do not
-// reach, nodes of an edge's two points are joined by an edge of the body or the same, and three
-// nodes of a triangle are a face.
+// that it lies in, or one of the nearest boundary face (tet_locator.h), and belongs to the node
+// that weighs most there, the smallest of those that weigh at most TetLocator::kWeightSlack less.
+// No edge is longer than half the tets' mean edge, and, but for what some rounds do not reach,
+// nodes of an edge's two points are joined by an edge of the body or the same, and three nodes of a
+// triangle are a face.
 //
 // Depends on mesh and render mesh alone. Given points keep their ids. Thread-safe once made.
 class DividedMesh {

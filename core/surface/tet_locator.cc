@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace cleave {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int32_t kMaxCells = 128;  // along an axis
+constexpr double kMargin = 1e-6;    // of a cell: more than kWeightSlack of any tet in it
 
 Vector3d At(const Vec3& place) { return Vector3d(place.data()); }
 
@@ -49,6 +51,7 @@ TetLocator::TetLocator(const TetMesh& mesh, const Faces& faces) : mesh_(mesh), f
     }
   }
   const Vector3d extent = high - low;
+  diagonal_ = extent.norm();
   const double volume = std::max(extent.prod(), 0.0);
   cell_size_ = std::cbrt(volume / static_cast<double>(mesh.tets.size())) * 1.5;
   cell_size_ = std::max(cell_size_, extent.maxCoeff() / kMaxCells);
@@ -84,15 +87,21 @@ std::array<int32_t, 3> TetLocator::CellOf(const Vec3& point) const {
 
 template <typename Visit>
 void TetLocator::ForCellsOf(const int32_t* nodes, size_t count, const Visit& visit) const {
-  std::array<int32_t, 3> low = CellOf(mesh_.rest_positions[static_cast<size_t>(nodes[0])]);
-  std::array<int32_t, 3> high = low;
+  Vec3 least = mesh_.rest_positions[static_cast<size_t>(nodes[0])];
+  Vec3 most = least;
   for (size_t i = 1; i < count; ++i) {
-    const auto cell = CellOf(mesh_.rest_positions[static_cast<size_t>(nodes[i])]);
+    const Vec3& at = mesh_.rest_positions[static_cast<size_t>(nodes[i])];
     for (size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], cell[axis]);
-      high[axis] = std::max(high[axis], cell[axis]);
+      least[axis] = std::min(least[axis], at[axis]);
+      most[axis] = std::max(most[axis], at[axis]);
     }
   }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    least[axis] -= kMargin * cell_size_;
+    most[axis] += kMargin * cell_size_;
+  }
+  const std::array<int32_t, 3> low = CellOf(least);
+  const std::array<int32_t, 3> high = CellOf(most);
   for (int32_t z = low[2]; z <= high[2]; ++z) {
     for (int32_t y = low[1]; y <= high[1]; ++y) {
       for (int32_t x = low[0]; x <= high[0]; ++x) visit(IndexOf({x, y, z}));
@@ -144,24 +153,17 @@ std::array<double, 4> TetLocator::Weights(int32_t tet, const Vec3& point) const 
 
 PlaceInTet TetLocator::Locate(const Vec3& point) const {
   const std::array<int32_t, 3> home = CellOf(point);
-  PlaceInTet place;
-  double best = -1e-12;  // of the smallest weight
-  bool is_inside = false;
-  for (const int32_t tet : cell_tets_[IndexOf(home)]) {
+  for (const int32_t tet : cell_tets_[IndexOf(home)]) {  // ascending
     const std::array<double, 4> weights = Weights(tet, point);
-    const double smallest = *std::min_element(weights.begin(), weights.end());
-    if (!(smallest > best)) continue;
-    best = smallest;
-    place = {tet, weights};
-    is_inside = true;
+    if (*std::min_element(weights.begin(), weights.end()) >= -kWeightSlack) return {tet, weights};
   }
-  if (is_inside) return place;
   // Cells around the home one, ring by ring, until none further off can hold a nearer face.
+  const double slack = kDistanceSlack * diagonal_;
   double nearest = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, int32_t>> near;  // distances (m) and tets
   const int32_t rings = *std::max_element(counts_.begin(), counts_.end());
   for (int32_t ring = 0; ring <= rings; ++ring) {
-    const double reached = (ring - 1) * cell_size_;
-    if (reached > 0 && nearest <= reached * reached) break;
+    if (nearest + slack <= (ring - 1) * cell_size_) break;
     for (int32_t z = std::max(0, home[2] - ring); z <= std::min(counts_[2] - 1, home[2] + ring);
          ++z) {
       for (int32_t y = std::max(0, home[1] - ring); y <= std::min(counts_[1] - 1, home[1] + ring);
@@ -179,16 +181,19 @@ PlaceInTet TetLocator::Locate(const Vec3& point) const {
               const int32_t node = mesh_.tets[static_cast<size_t>(side.tet)][vertex];
               corners[i] = At(mesh_.rest_positions[static_cast<size_t>(node)]);
             }
-            const double distance = SquaredDistance(At(point), corners[0], corners[1], corners[2]);
-            const bool is_nearer =
-                distance < nearest || (distance == nearest && side.tet < place.tet);
-            if (!is_nearer) continue;
-            nearest = distance;
-            place.tet = side.tet;
+            const double distance =
+                std::sqrt(SquaredDistance(At(point), corners[0], corners[1], corners[2]));
+            if (distance > nearest + slack) continue;
+            nearest = std::min(nearest, distance);
+            near.emplace_back(distance, side.tet);
           }
         }
       }
     }
+  }
+  PlaceInTet place{std::numeric_limits<int32_t>::max(), {}};
+  for (const auto& [distance, tet] : near) {
+    if (distance <= nearest + slack) place.tet = std::min(place.tet, tet);
   }
   place.weights = Weights(place.tet, point);
   return place;

@@ -1,6 +1,6 @@
 """The Python client against the real server.
 
-Usage: python_client_test.py CLEAVED STUBS_FOLDER [unittest arguments]; client/python is on the path.
+Usage: python_client_test.py CLEAVED CLEAVE STUBS_FOLDER [unittest arguments]; client/python is on the path.
 """
 
 import contextlib
@@ -12,7 +12,7 @@ import sys
 import tempfile
 import unittest
 
-CLEAVED, STUBS = sys.argv[1:3]
+CLEAVED, CLEAVE, STUBS = sys.argv[1:4]
 
 import make_stubs  # noqa: E402
 
@@ -31,6 +31,16 @@ from cleave.events import read_events  # noqa: E402
 from cleave.impurity_picture import (  # noqa: E402
     draw_impurities, shown_impurities, write_png)
 from cleave.v1 import scene_pb2, session_pb2  # noqa: E402
+
+
+def ply_points(path):
+    """The vertices of a binary PLY file, n x 3."""
+    head, _, body = path.read_bytes().partition(b"end_header\n")
+    vertices = head.decode().split("element vertex ")[1].split("element face")[0].splitlines()
+    kinds = {"float": "<f4", "uchar": "u1"}
+    layout = [(name, kinds[kind]) for _, kind, name in map(str.split, vertices[1:])]
+    table = np.frombuffer(body, layout, int(vertices[0]))
+    return np.column_stack([table[axis] for axis in "xyz"])
 
 
 class PythonClientTest(unittest.TestCase):
@@ -84,8 +94,8 @@ class PythonClientTest(unittest.TestCase):
         np.testing.assert_array_equal(list(again.frames(5))[0].positions, frames[-1].positions)
 
     def test_render_mesh_is_there_for_all_who_join_and_breaks_with_the_body(self):
-        # Half of the bar's four long sides, as triangles between 41 squares.
-        ring = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * first_steps.SIDE
+        # Half of the bar's four long sides, as triangles between 41 squares, a little outside of it.
+        ring = np.array([[-0.1, -0.1], [1.1, -0.1], [1.1, 1.1], [-0.1, 1.1]]) * first_steps.SIDE
         points = np.array([[x, *corner] for x in np.linspace(0, first_steps.LENGTH, 41)
                            for corner in ring])
         triangles = np.array([[4 * i + j, 4 * i + j + 4, 4 * i + (j + 1) % 4]
@@ -105,9 +115,16 @@ class PythonClientTest(unittest.TestCase):
         np.testing.assert_array_equal(shown.triangles, triangles)
         np.testing.assert_array_equal(shown.uvs, uvs)
         mesh = joined.mesh()
+        # The command line's exports have the vertices where Python has them.
+        recorded = pathlib.Path(self._folder.name) / "clad"
+        for words in (["watch", "clad", "--server", self.address, "--out", recorded],
+                      ["export", recorded, "--format", "ply"]):
+            subprocess.run([CLEAVE, *words], check=True, capture_output=True)
         fine = EmbeddedVertices(mesh.positions, mesh.tets, shown.points)
         for frame in joined.frames(mesh=mesh):
             moved = fine.move(frame.positions, frame.broken_edges)
+            exported = ply_points(recorded / "ply" / f"cleave_{frame.number:06}.ply")
+            np.testing.assert_allclose(moved, exported[: len(points)], rtol=0, atol=2e-8)
             torn = fine.torn(shown.triangles)
             if frame.number == 0:
                 np.testing.assert_allclose(moved, points, atol=1e-6)
@@ -450,4 +467,4 @@ class PythonClientTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -75,6 +75,58 @@ class EmbeddedVerticesTest(unittest.TestCase):
         self.assertTrue(torn[[0, 2]].all())
         self.assertFalse(torn[[1, 3]].any())
 
+    def test_vertices_outside_go_with_the_lowest_tet_at_the_nearest_face(self):
+        # Most are nearest to a corner, side or diagonal, where several faces are as near.
+        places = np.array(list(itertools.product((-0.5, 0, 1, 3.5, 4.5), (-1, 1, 2.5), (-0.2, 0.5, 3))))
+        places = places[((places < 0) | (places > (4, 2, 2))).any(axis=1)]
+        fine = EmbeddedVertices(self.rest, self.tets, places)
+        nearest = np.clip(places, 0, (4, 2, 2))
+        for place, tet in zip(nearest, fine.tets):
+            # Of a box, the nearest point's own tets are those with a nearest face.
+            offsets = place - self.rest[self.tets[:, 0]]
+            edges = np.swapaxes(self.rest[self.tets[:, 1:]] - self.rest[self.tets[:, :1]], 1, 2)
+            inner = np.linalg.solve(edges, offsets[:, :, None])[:, :, 0]
+            each = np.column_stack([1 - inner.sum(axis=1), inner])
+            holds = each.min(axis=1) > -1e-12
+            # And not those that touch it with a corner or side of no boundary face.
+            on_side = np.zeros(len(self.tets), bool)
+            for corners in itertools.combinations(range(4), 3):
+                ends = self.rest[self.tets[:, corners]]
+                flat = (ends == ends[:, :1]).all(axis=1) & ((ends[:, 0] == 0) | (ends[:, 0] == (4, 2, 2)))
+                opposite = [k for k in range(4) if k not in corners][0]
+                on_side |= flat.any(axis=1) & (np.abs(each[:, opposite]) < 1e-12)
+            self.assertEqual(tet, np.flatnonzero(holds & on_side)[0], place)
+
+    def test_vertices_between_tets_and_nodes_go_with_the_lowest(self):
+        centers = self.rest[self.tets].mean(axis=1)
+        corners = self.rest[self.tets]
+        middles = np.concatenate([(corners[:, i] + corners[:, j]) / 2 for i in range(4) for j in range(i)])
+        for vertices in centers, middles, self.rest:
+            # In places that numbers do not tell exactly.
+            fine = EmbeddedVertices(self.rest / 7 + 0.1, self.tets, vertices / 7 + 0.1)
+            for vertex, tet, node in zip(vertices, fine.tets, fine.nodes):
+                holds = [t for t in range(tet + 1) if self.holds(t, vertex)]
+                self.assertEqual(holds, [tet])
+                away = np.linalg.norm(self.rest[self.tets[tet]] - vertex, axis=1)
+                weights = self.weights_in(tet, vertex)
+                self.assertEqual(node, self.tets[tet][weights > weights.max() - 1e-6].min(), away)
+
+    def weights_in(self, tet, vertex):
+        edges = (self.rest[self.tets[tet, 1:]] - self.rest[self.tets[tet, 0]]).T
+        inner = np.linalg.solve(edges, vertex - self.rest[self.tets[tet, 0]])
+        return np.concatenate([[1 - inner.sum()], inner])
+
+    def holds(self, tet, vertex):
+        return self.weights_in(tet, vertex).min() > -1e-6
+
+    def test_a_crumb_that_lost_all_tets_at_once_is_turned_as_they_are(self):
+        turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        around = np.flatnonzero((self.edges == 0).any(axis=1))
+        fine = EmbeddedVertices(self.rest, self.tets, [[0.1, 0.05, 0.02]])
+        moved = fine.move(self.rest @ turn.T, around)
+        self.assertEqual(fine.nodes[0], 0)
+        np.testing.assert_allclose(moved, [[-0.05, 0.1, 0.02]], atol=1e-12)
+
     def test_other_arrays_are_refused(self):
         with self.assertRaisesRegex(ValueError, "positions: shape"):
             self.fine.move(self.rest[1:], [])
