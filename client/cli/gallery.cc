@@ -20,9 +20,9 @@
 #include "client/cli/program.h"
 #include "client/cli/progress.h"
 #include "client/io/mesh/file_bytes.h"
-#include "client/io/preview/image.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/status.h"
+#include "core/picture/image.h"
 
 namespace cleave {
 namespace {

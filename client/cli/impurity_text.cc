@@ -1,6 +1,7 @@
 #include "client/cli/impurity_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -9,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/mesh_text.h"
 #include "client/io/export/vtu.h"
+#include "core/picture/impurity_picture.h"
 
 namespace cleave {
 namespace {
@@ -48,20 +50,13 @@ std::string ImpurityText(const v1::PreviewImpurityResponse& preview, bool relati
 }
 
 std::vector<double> ShownImpurities(const v1::PreviewImpurityResponse& preview) {
-  double most = 0;
-  for (const double potency : preview.potencies()) most = std::max(most, std::abs(potency));
-  std::vector<double> shown;
-  for (const double potency : preview.potencies())
-    shown.push_back(most > 0 ? std::abs(potency) / most : 0);
-  for (int edge = 0; edge < preview.weakenings_size(); ++edge) {
-    const double weakening = preview.weakenings(edge);
-    const double change = 1 - std::min(weakening, 1 / weakening);
-    for (const int end : {0, 1}) {
-      double& node = shown[static_cast<size_t>(preview.edge_nodes(2 * edge + end))];
-      node = std::max(node, change);
-    }
-  }
-  return shown;
+  std::vector<std::array<int32_t, 2>> edges;
+  for (int edge = 0; edge < preview.weakenings_size(); ++edge)
+    edges.push_back({preview.edge_nodes(2 * edge), preview.edge_nodes(2 * edge + 1)});
+  const auto span = [](const google::protobuf::RepeatedField<double>& values) {
+    return std::span<const double>(values.data(), static_cast<size_t>(values.size()));
+  };
+  return ImpurityShares(span(preview.potencies()), edges, span(preview.weakenings()));
 }
 
 absl::StatusOr<std::string> PotencyVtu(const TetMesh& mesh,

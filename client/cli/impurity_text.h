@@ -14,8 +14,7 @@ namespace cleave {
 // the pure body's, else Pa.
 std::string ImpurityText(const v1::PreviewImpurityResponse& preview, bool relative);
 
-// How impure every node looks, [0, 1]: its |potency| in the largest, or how far edges of it are
-// weakened or strengthened, whichever is more. The preview has edges.
+// ImpurityShares of a preview with edges.
 std::vector<double> ShownImpurities(const v1::PreviewImpurityResponse& preview);
 
 // The bytes of VTU files: the mesh with potency a node, and the affected edges as lines with

@@ -24,9 +24,9 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/impurity_picture.h"
 #include "client/io/preview/preview.h"
 #include "client/io/preview/scene_look.h"
+#include "core/picture/impurity_picture.h"
 #include "tests/scenes/demonstration.h"
 #include "tests/scenes/locality.h"
 #include "tests/scenes/scene_json.h"

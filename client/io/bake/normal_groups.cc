@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "client/io/series/surface_normals.h"
 #include "core/base/parallel.h"
+#include "core/picture/surface_normals.h"
 
 namespace cleave {
 namespace {

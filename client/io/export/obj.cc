@@ -13,8 +13,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/io/export/number_text.h"
-#include "client/io/series/surface_normals.h"
 #include "core/base/status.h"
+#include "core/picture/surface_normals.h"
 
 namespace cleave {
 namespace {

@@ -7,8 +7,8 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "client/io/export/surface_materials.h"
-#include "client/io/series/shown_surface.h"
 #include "core/base/vec3.h"
+#include "core/picture/shown_surface.h"
 
 namespace cleave {
 

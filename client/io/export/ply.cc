@@ -8,9 +8,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/io/series/palette.h"
 #include "core/base/bytes.h"
 #include "core/base/status.h"
+#include "core/picture/palette.h"
 
 namespace cleave {
 namespace {

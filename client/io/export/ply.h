@@ -5,7 +5,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "client/io/series/shown_surface.h"
+#include "core/picture/shown_surface.h"
 
 namespace cleave {
 

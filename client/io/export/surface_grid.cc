@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "client/io/series/shown_surface.h"
+#include "core/picture/shown_surface.h"
 
 namespace cleave {
 namespace {

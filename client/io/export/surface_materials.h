@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "client/io/series/palette.h"
 #include "core/base/vec3.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/picture/palette.h"
 
 namespace cleave {
 

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/legend.h"
 #include "client/io/preview/motion_survey.h"
 #include "client/io/preview/studio.h"
-#include "client/io/preview/text.h"
 #include "client/io/preview/webp_animation.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/faults.h"
 #include "core/base/status.h"
+#include "core/picture/legend.h"
+#include "core/picture/text.h"
 
 namespace cleave {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/io/preview/camera.h"
-#include "client/io/preview/image.h"
 #include "client/io/preview/props.h"
-#include "client/io/preview/render.h"
 #include "client/io/series/frame_source.h"
 #include "core/mesh/render_mesh.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/picture/camera.h"
+#include "core/picture/image.h"
+#include "core/picture/render.h"
 
 namespace cleave {
 

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "client/io/series/shown_surface.h"
 #include "core/base/vec3.h"
+#include "core/picture/shown_surface.h"
 #include "core/scene/scene.h"
 
 namespace cleave {

@@ -7,17 +7,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "core/picture/camera.h"
 #include "core/scene/selection.h"
 
 namespace cleave {
 
 void ApplySceneLook(const Scene& scene, const TetMesh& mesh, PreviewOptions& options) {
   options.title = scene.name;
-  options.camera.up.reset();
-  if (scene.gravity && *scene.gravity != Vec3{0, 0, 0}) {
-    const Vec3& gravity = *scene.gravity;
-    options.camera.up = Vec3{-gravity[0], -gravity[1], -gravity[2]};
-  }
+  options.camera.up = UpAgainst(scene.gravity);
   options.props.clear();
   for (const Collider& collider : scene.colliders) {
     std::optional<Prop> prop = PropOf(collider.shape);

@@ -11,9 +11,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/io/preview/text.h"
 #include "core/base/faults.h"
 #include "core/base/status.h"
+#include "core/picture/text.h"
 
 namespace cleave {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/io/preview/legend.h"
 #include "client/io/preview/motion_survey.h"
 #include "client/io/preview/preview.h"
 #include "client/io/series/surface_sequence.h"
+#include "core/picture/legend.h"
 
 namespace cleave {
 

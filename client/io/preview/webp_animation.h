@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "client/io/preview/image.h"
+#include "core/picture/image.h"
 
 struct WebPAnimEncoder;
 

@@ -8,10 +8,10 @@
 
 #include "absl/status/status.h"
 #include "client/io/series/moved_points.h"
-#include "client/io/series/shown_surface.h"
 #include "core/damage/named_pieces.h"
 #include "core/mesh/incidence.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/picture/shown_surface.h"
 #include "core/stream/frame.h"
 #include "core/surface/embedded_mesh.h"
 #include "core/surface/faces.h"

@@ -8,7 +8,7 @@
 
 #include "absl/strings/cord.h"
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/image.h"
+#include "core/picture/image.h"
 #include "google/rpc/error_details.pb.h"
 #include "tests/unit/temporary_directory.h"
 

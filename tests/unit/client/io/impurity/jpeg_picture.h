@@ -8,7 +8,7 @@
 // It needs size_t and FILE declared before it.
 #include <jpeglib.h>
 
-#include "client/io/preview/image.h"
+#include "core/picture/image.h"
 
 namespace cleave {
 

@@ -14,7 +14,7 @@
 #include "client/io/impurity/picture_file.h"
 #include "client/io/impurity/ply_points.h"
 #include "client/io/mesh/vtu.h"
-#include "client/io/preview/image.h"
+#include "core/picture/image.h"
 #include "tests/unit/client/io/impurity/jpeg_picture.h"
 #include "tests/unit/temporary_directory.h"
 

@@ -2,8 +2,8 @@
 #include <png.h>
 #include <webp/demux.h>
 
-#include "client/io/preview/image.h"
 #include "client/io/preview/webp_animation.h"
+#include "core/picture/image.h"
 
 namespace cleave {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/io/preview/camera.h"
+#include "core/picture/camera.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/faults.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -55,7 +54,7 @@ Vector3d LongDirection(std::span<const Vec3> points, const Vector3d& mean, const
   return direction[largest] < 0 ? Vector3d(-direction) : direction;
 }
 
-absl::Status CheckOptions(std::span<const Vec3> points, double aspect,
+absl::Status CheckFraming(std::span<const Vec3> points, double aspect,
                           const CameraOptions& options) {
   Faults faults;
   if (points.empty()) faults.Error("points", "there is nothing to frame");
@@ -67,6 +66,19 @@ absl::Status CheckOptions(std::span<const Vec3> points, double aspect,
   if (!(aspect > 0.01 && aspect < 100)) {
     faults.Error("aspect", absl::StrCat(aspect, " is outside (0.01, 100)"));
   }
+  faults.Append("", CheckCameraOptions(options));
+  return faults.ToStatus();
+}
+
+}  // namespace
+
+std::optional<Vec3> UpAgainst(const std::optional<Vec3>& gravity) {
+  if (!gravity || *gravity == Vec3{0, 0, 0}) return std::nullopt;
+  return Vec3{-(*gravity)[0], -(*gravity)[1], -(*gravity)[2]};
+}
+
+Faults CheckCameraOptions(const CameraOptions& options) {
+  Faults faults;
   if (options.up && !(ToEigen(*options.up).norm() > 0 && ToEigen(*options.up).allFinite())) {
     faults.Error("up", "must be finite and not zero");
   }
@@ -79,14 +91,12 @@ absl::Status CheckOptions(std::span<const Vec3> points, double aspect,
   if (!(options.margin >= 0 && options.margin <= 0.45)) {
     faults.Error("margin", absl::StrCat(options.margin, " is outside [0, 0.45]"));
   }
-  return faults.ToStatus();
+  return faults;
 }
-
-}  // namespace
 
 absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
                                    const CameraOptions& options) {
-  CLEAVE_RETURN_IF_ERROR(CheckOptions(points, aspect, options));
+  CLEAVE_RETURN_IF_ERROR(CheckFraming(points, aspect, options));
   Vector3d low = ToEigen(points[0]);
   Vector3d high = low;
   Vector3d mean = Vector3d::Zero();

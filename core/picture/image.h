@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_IMAGE_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_IMAGE_H_
+#ifndef CLEAVE_CORE_PICTURE_IMAGE_H_
+#define CLEAVE_CORE_PICTURE_IMAGE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -37,4 +37,4 @@ absl::StatusOr<std::string> EncodePng(const Image& image);
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_IMAGE_H_
+#endif  // CLEAVE_CORE_PICTURE_IMAGE_H_

@@ -1,4 +1,4 @@
-#include "client/io/series/surface_normals.h"
+#include "core/picture/surface_normals.h"
 
 #include <Eigen/Geometry>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "client/io/series/palette.h"
+#include "core/picture/palette.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "client/io/preview/impurity_picture.h"
+#include "core/picture/impurity_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/legend.h"
-#include "client/io/preview/render.h"
-#include "client/io/preview/text.h"
-#include "client/io/series/palette.h"
-#include "client/io/series/shown_surface.h"
 #include "core/base/status.h"
 #include "core/mesh/boundary_faces.h"
+#include "core/picture/legend.h"
+#include "core/picture/palette.h"
+#include "core/picture/render.h"
+#include "core/picture/shown_surface.h"
+#include "core/picture/text.h"
 
 namespace cleave {
 namespace {
@@ -42,8 +42,38 @@ ShownSurface BoundaryOf(const TetMesh& mesh, std::span<const double> impurities)
 
 }  // namespace
 
+Faults CheckImpurityPicture(const ImpurityPictureOptions& options, int max_width) {
+  constexpr int kMinWidth = 16;
+  Faults faults;
+  if (options.width < kMinWidth || options.width > max_width) {
+    faults.Error("width", absl::StrCat(options.width, " is outside [", kMinWidth, ", ", max_width,
+                                       "] pixels"));
+  }
+  faults.Append("", CheckCameraOptions(options.camera));
+  return faults;
+}
+
+std::vector<double> ImpurityShares(std::span<const double> potencies,
+                                   std::span<const std::array<int32_t, 2>> edges,
+                                   std::span<const double> weakenings) {
+  double most = 0;
+  for (const double potency : potencies) most = std::max(most, std::abs(potency));
+  std::vector<double> shares;
+  shares.reserve(potencies.size());
+  for (const double potency : potencies) shares.push_back(most > 0 ? std::abs(potency) / most : 0);
+  for (size_t edge = 0; edge < edges.size(); ++edge) {
+    const double change = 1 - std::min(weakenings[edge], 1 / weakenings[edge]);
+    for (const int32_t node : edges[edge]) {
+      double& share = shares[static_cast<size_t>(node)];
+      share = std::max(share, change);
+    }
+  }
+  return shares;
+}
+
 absl::StatusOr<Image> RenderImpurities(const TetMesh& mesh, std::span<const double> impurities,
                                        const ImpurityPictureOptions& options) {
+  CLEAVE_RETURN_IF_ERROR(CheckImpurityPicture(options, kMaxImageSide).ToStatus());
   if (static_cast<int64_t>(impurities.size()) != mesh.node_count()) {
     return absl::InvalidArgumentError(absl::StrCat("impurities: has ", impurities.size(),
                                                    " shares; the mesh has ", mesh.node_count(),

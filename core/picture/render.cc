@@ -1,4 +1,4 @@
-#include "client/io/preview/render.h"
+#include "core/picture/render.h"
 
 #include <embree3/rtcore.h>
 
@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/light_filter.h"
-#include "client/io/preview/lit_scene.h"
 #include "core/base/faults.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/picture/light_filter.h"
+#include "core/picture/lit_scene.h"
 
 namespace cleave {
 namespace {

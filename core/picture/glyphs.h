@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_GLYPHS_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_GLYPHS_H_
+#ifndef CLEAVE_CORE_PICTURE_GLYPHS_H_
+#define CLEAVE_CORE_PICTURE_GLYPHS_H_
 
 #include <array>
 
@@ -112,4 +112,4 @@ inline constexpr const char* kUnknownGlyph = "0e0q6q6e0e";
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_GLYPHS_H_
+#endif  // CLEAVE_CORE_PICTURE_GLYPHS_H_

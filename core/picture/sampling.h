@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_SAMPLING_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_SAMPLING_H_
+#ifndef CLEAVE_CORE_PICTURE_SAMPLING_H_
+#define CLEAVE_CORE_PICTURE_SAMPLING_H_
 
 #include <Eigen/Core>
 #include <array>
@@ -39,4 +39,4 @@ inline Eigen::Vector3f CosineDirection(const Eigen::Vector3f& normal,
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_SAMPLING_H_
+#endif  // CLEAVE_CORE_PICTURE_SAMPLING_H_

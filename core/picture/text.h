@@ -1,11 +1,11 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_TEXT_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_TEXT_H_
+#ifndef CLEAVE_CORE_PICTURE_TEXT_H_
+#define CLEAVE_CORE_PICTURE_TEXT_H_
 
 #include <string>
 
 #include "absl/strings/string_view.h"
-#include "client/io/preview/image.h"
-#include "client/io/series/palette.h"
+#include "core/picture/image.h"
+#include "core/picture/palette.h"
 
 namespace cleave {
 
@@ -38,4 +38,4 @@ void FillRectangle(int left, int top, int width, int height, const Color& color,
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_TEXT_H_
+#endif  // CLEAVE_CORE_PICTURE_TEXT_H_

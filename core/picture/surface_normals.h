@@ -1,11 +1,11 @@
-#ifndef CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
-#define CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
+#ifndef CLEAVE_CORE_PICTURE_SURFACE_NORMALS_H_
+#define CLEAVE_CORE_PICTURE_SURFACE_NORMALS_H_
 
 #include <Eigen/Core>
 #include <array>
 #include <vector>
 
-#include "client/io/series/shown_surface.h"
+#include "core/picture/shown_surface.h"
 
 namespace cleave {
 
@@ -20,4 +20,4 @@ std::vector<std::array<Eigen::Vector3f, 3>> CornerNormals(const ShownSurface& su
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_SERIES_SURFACE_NORMALS_H_
+#endif  // CLEAVE_CORE_PICTURE_SURFACE_NORMALS_H_

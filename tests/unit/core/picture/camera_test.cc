@@ -1,4 +1,4 @@
-#include "client/io/preview/camera.h"
+#include "core/picture/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

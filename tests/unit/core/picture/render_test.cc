@@ -1,4 +1,4 @@
-#include "client/io/preview/render.h"
+#include "core/picture/render.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_LEGEND_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_LEGEND_H_
+#ifndef CLEAVE_CORE_PICTURE_LEGEND_H_
+#define CLEAVE_CORE_PICTURE_LEGEND_H_
 
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "client/io/preview/image.h"
-#include "client/io/series/palette.h"
+#include "core/picture/image.h"
+#include "core/picture/palette.h"
 
 namespace cleave {
 
@@ -26,4 +26,4 @@ void DrawLegend(const Legend& legend, double left, double baseline, double heigh
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_LEGEND_H_
+#endif  // CLEAVE_CORE_PICTURE_LEGEND_H_

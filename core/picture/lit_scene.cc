@@ -1,4 +1,4 @@
-#include "client/io/preview/lit_scene.h"
+#include "core/picture/lit_scene.h"
 
 #include <embree3/rtcore.h>
 
@@ -9,9 +9,9 @@
 #include <limits>
 #include <numbers>
 
-#include "client/io/preview/sampling.h"
-#include "client/io/series/palette.h"
-#include "client/io/series/surface_normals.h"
+#include "core/picture/palette.h"
+#include "core/picture/sampling.h"
+#include "core/picture/surface_normals.h"
 
 namespace cleave {
 namespace {

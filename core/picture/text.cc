@@ -1,4 +1,4 @@
-#include "client/io/preview/text.h"
+#include "core/picture/text.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "client/io/preview/glyphs.h"
+#include "core/picture/glyphs.h"
 
 namespace cleave {
 namespace {

@@ -1,10 +1,10 @@
-#include "client/io/preview/text.h"
+#include "core/picture/text.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "client/io/preview/legend.h"
+#include "core/picture/legend.h"
 
 namespace cleave {
 namespace {

@@ -1,4 +1,4 @@
-#include "client/io/preview/light_filter.h"
+#include "core/picture/light_filter.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
-#include "client/io/preview/legend.h"
+#include "core/picture/legend.h"
 
 #include <cmath>
 #include <cstddef>
 
-#include "client/io/preview/text.h"
+#include "core/picture/text.h"
 
 namespace cleave {
 namespace {

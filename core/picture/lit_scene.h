@@ -1,14 +1,14 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_
+#ifndef CLEAVE_CORE_PICTURE_LIT_SCENE_H_
+#define CLEAVE_CORE_PICTURE_LIT_SCENE_H_
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "client/io/preview/camera.h"
-#include "client/io/preview/render.h"
-#include "client/io/series/shown_surface.h"
+#include "core/picture/camera.h"
+#include "core/picture/render.h"
+#include "core/picture/shown_surface.h"
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -106,4 +106,4 @@ class LitScene {
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_LIT_SCENE_H_
+#endif  // CLEAVE_CORE_PICTURE_LIT_SCENE_H_

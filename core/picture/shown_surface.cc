@@ -1,4 +1,4 @@
-#include "client/io/series/shown_surface.h"
+#include "core/picture/shown_surface.h"
 
 #include <cmath>
 #include <cstddef>

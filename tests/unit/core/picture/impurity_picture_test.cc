@@ -1,7 +1,11 @@
-#include "client/io/preview/impurity_picture.h"
+#include "core/picture/impurity_picture.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "tests/unit/core/mesh/kuhn_mesh.h"
@@ -44,6 +48,32 @@ TEST(RenderImpurities, ShowsThemInMagentaOnYellow) {
   EXPECT_GT(Count(*half).yellow, 400);
   impurities.pop_back();
   EXPECT_FALSE(RenderImpurities(mesh, impurities, options).ok());
+}
+
+TEST(ImpurityShares, AreOfPotencyOrOfWhatEdgesCount) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::array<double, 6> potencies{0, -2, 4, 0, 0, 0};
+  const std::array<std::array<int32_t, 2>, 4> edges{{{0, 1}, {2, 3}, {3, 4}, {4, 5}}};
+  EXPECT_THAT(ImpurityShares(potencies, edges, std::array{0.25, 4.0, 1.0, 1.0}),
+              testing::ElementsAre(0.75, 0.75, 1, 0.75, 0, 0));
+  // A cut, and what never breaks.
+  EXPECT_THAT(ImpurityShares(std::array<double, 6>{}, edges, std::array{0.0, 1.0, 1.0, infinity}),
+              testing::ElementsAre(1, 1, 0, 0, 1, 1));
+}
+
+TEST(CheckImpurityPicture, NamesEveryBadOption) {
+  ImpurityPictureOptions options;
+  EXPECT_TRUE(CheckImpurityPicture(options, 960).ok());
+  options.width = 961;
+  options.camera.azimuth = std::numeric_limits<double>::quiet_NaN();
+  options.camera.elevation = -89;
+  const Faults faults = CheckImpurityPicture(options, 960);
+  ASSERT_EQ(faults.error_count(), 3);
+  EXPECT_EQ(faults.errors()[0].description, "961 is outside [16, 960] pixels");
+  EXPECT_EQ(faults.errors()[1].field, "azimuth");
+  EXPECT_EQ(faults.errors()[2].field, "elevation");
+  EXPECT_FALSE(
+      RenderImpurities(KuhnBox({1, 1, 1}, {1, 1, 1}), std::vector<double>(8, 0), options).ok());
 }
 
 }  // namespace

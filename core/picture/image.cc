@@ -1,4 +1,4 @@
-#include "client/io/preview/image.h"
+#include "core/picture/image.h"
 
 #include <png.h>
 

@@ -1,14 +1,14 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_
+#ifndef CLEAVE_CORE_PICTURE_RENDER_H_
+#define CLEAVE_CORE_PICTURE_RENDER_H_
 
 #include <cstdint>
 #include <map>
 #include <memory>
 
 #include "absl/status/statusor.h"
-#include "client/io/preview/camera.h"
-#include "client/io/preview/image.h"
-#include "client/io/series/shown_surface.h"
+#include "core/picture/camera.h"
+#include "core/picture/image.h"
+#include "core/picture/shown_surface.h"
 
 struct RTCDeviceTy;
 
@@ -70,4 +70,4 @@ class Renderer {
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_RENDER_H_
+#endif  // CLEAVE_CORE_PICTURE_RENDER_H_

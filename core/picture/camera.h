@@ -1,11 +1,12 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_CAMERA_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_CAMERA_H_
+#ifndef CLEAVE_CORE_PICTURE_CAMERA_H_
+#define CLEAVE_CORE_PICTURE_CAMERA_H_
 
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/base/faults.h"
 #include "core/base/vec3.h"
 
 namespace cleave {
@@ -35,6 +36,12 @@ struct CameraOptions {
   double margin = 0.08;  // free part of the picture at each side, in [0, 0.45]
 };
 
+// Where a scene's up is: against gravity (m/s^2), absent without it.
+std::optional<Vec3> UpAgainst(const std::optional<Vec3>& gravity);
+
+// What is wrong with options, by the names of their fields.
+Faults CheckCameraOptions(const CameraOptions& options);
+
 // The closest camera of the default lens that holds all `points` (m), usually the points of all
 // frames. `aspect` is width by height. Errors: InvalidArgument for no points, NaN or bad options.
 absl::StatusOr<Camera> FrameCamera(std::span<const Vec3> points, double aspect,
@@ -53,4 +60,4 @@ absl::StatusOr<double> NaturalAspect(std::span<const Vec3> points, const CameraO
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_CAMERA_H_
+#endif  // CLEAVE_CORE_PICTURE_CAMERA_H_

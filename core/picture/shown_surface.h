@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_
-#define CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_
+#ifndef CLEAVE_CORE_PICTURE_SHOWN_SURFACE_H_
+#define CLEAVE_CORE_PICTURE_SHOWN_SURFACE_H_
 
 #include <array>
 #include <cstdint>
@@ -47,4 +47,4 @@ absl::Status CheckShownSurface(const ShownSurface& surface);
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_SERIES_SHOWN_SURFACE_H_
+#endif  // CLEAVE_CORE_PICTURE_SHOWN_SURFACE_H_

@@ -1,10 +1,10 @@
-#include "client/io/series/shown_surface.h"
+#include "core/picture/shown_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "client/io/series/palette.h"
+#include "core/picture/palette.h"
 
 namespace cleave {
 namespace {

@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_SERIES_PALETTE_H_
-#define CLEAVE_CLIENT_IO_SERIES_PALETTE_H_
+#ifndef CLEAVE_CORE_PICTURE_PALETTE_H_
+#define CLEAVE_CORE_PICTURE_PALETTE_H_
 
 #include <array>
 #include <cstdint>
@@ -27,4 +27,4 @@ Color ImpurityColor(double value);
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_SERIES_PALETTE_H_
+#endif  // CLEAVE_CORE_PICTURE_PALETTE_H_

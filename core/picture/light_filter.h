@@ -1,5 +1,5 @@
-#ifndef CLEAVE_CLIENT_IO_PREVIEW_LIGHT_FILTER_H_
-#define CLEAVE_CLIENT_IO_PREVIEW_LIGHT_FILTER_H_
+#ifndef CLEAVE_CORE_PICTURE_LIGHT_FILTER_H_
+#define CLEAVE_CORE_PICTURE_LIGHT_FILTER_H_
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -50,4 +50,4 @@ Eigen::Vector3f FilteredColor(const LitPixels& pixels, int x, int y, float radiu
 
 }  // namespace cleave
 
-#endif  // CLEAVE_CLIENT_IO_PREVIEW_LIGHT_FILTER_H_
+#endif  // CLEAVE_CORE_PICTURE_LIGHT_FILTER_H_
