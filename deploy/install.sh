@@ -10,7 +10,8 @@ packages=(
   libpugixml-dev zlib1g-dev                 # VTU meshes: XML, compressed arrays
   libcli11-dev                              # verbs and help of the command line
   libassimp-dev                             # surfaces: OBJ, PLY, STL
-  libembree-dev libpng-dev libwebp-dev      # pictures: rays, stills, animations
+  libembree-dev libpng-dev                  # pictures, also of the server: rays, stills
+  libwebp-dev                               # animations
   libjpeg-dev                               # pictures that are drawn on bodies
   python3 python3-grpcio python3-protobuf python3-numpy python3-zstandard    # the Python client
   libgtest-dev libgmock-dev                 # tests

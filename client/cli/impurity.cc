@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -16,13 +17,13 @@
 #include "client/cli/session_start.h"
 #include "client/cli/session_text.h"
 #include "client/io/mesh/file_bytes.h"
-#include "client/io/preview/preview.h"
-#include "client/io/preview/scene_look.h"
 #include "client/io/scene/parse.h"
 #include "client/io/series/write_aside.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh_check.h"
 #include "core/model/impurity_preview.h"
+#include "core/picture/camera.h"
+#include "core/picture/image.h"
 #include "core/picture/impurity_picture.h"
 #include "core/scene/limits.h"
 #include "core/scene/validate.h"
@@ -60,12 +61,22 @@ absl::StatusOr<v1::ImpurityLayer> ParseLayer(const std::string& argument) {
   return absl::InvalidArgumentError(all);
 }
 
-absl::StatusOr<v1::PreviewImpurityResponse> PreviewHere(const SceneInput& input,
+// With a picture where files are asked for, as of a server.
+absl::StatusOr<v1::PreviewImpurityResponse> PreviewHere(const Options& options,
+                                                        const SceneInput& input,
                                                         const TetMesh& mesh) {
   const Faults faults = ValidateSceneWithMesh(input.scene, mesh);
   if (!faults.ok()) return absl::InvalidArgumentError(input.file.Describe(faults.errors()));
   CLEAVE_ASSIGN_OR_RETURN(const ImpurityPreview preview, PreviewImpurities(input.scene, mesh));
-  return MessageFromPreview(preview, true);
+  v1::PreviewImpurityResponse response = MessageFromPreview(preview, true);
+  if (options.out.empty()) return response;
+  ImpurityPictureOptions picture = options.picture;
+  picture.title = input.scene.name;
+  picture.camera.up = UpAgainst(input.scene.gravity);
+  CLEAVE_ASSIGN_OR_RETURN(const Image image,
+                          RenderImpurities(mesh, ShownImpurities(response), picture));
+  CLEAVE_ASSIGN_OR_RETURN(*response.mutable_picture_png(), EncodePng(image));
+  return response;
 }
 
 absl::StatusOr<v1::PreviewImpurityResponse> PreviewThere(Program& program, const Options& options,
@@ -75,13 +86,14 @@ absl::StatusOr<v1::PreviewImpurityResponse> PreviewThere(Program& program, const
   v1::PreviewImpurityRequest request;
   CLEAVE_ASSIGN_OR_RETURN(*request.mutable_scene(), SceneForServer(*client, input, options.json));
   request.set_with_edges(true);
+  if (!options.out.empty()) WritePictureOptions(options.picture, *request.mutable_picture());
   auto response = client->PreviewImpurity(request);
   if (!response.ok()) return WithLines(input.file, response.status());
   return response;
 }
 
-absl::Status WriteFiles(const Options& options, const SceneInput& input, const TetMesh& mesh,
-                        const v1::PreviewImpurityResponse& preview) {
+absl::Status WriteFiles(const Options& options, const TetMesh& mesh,
+                        const v1::PreviewImpurityResponse& preview, const std::string& picture) {
   CLEAVE_RETURN_IF_ERROR(MakeDirectories(options.out));
   const auto write = [&](const char* name, const std::string& bytes) -> absl::Status {
     const std::string path = absl::StrCat(options.out, "/", name);
@@ -93,15 +105,7 @@ absl::Status WriteFiles(const Options& options, const SceneInput& input, const T
   CLEAVE_RETURN_IF_ERROR(write("impurity.vtu", potencies));
   CLEAVE_ASSIGN_OR_RETURN(const std::string edges, AffectedEdgesVtu(mesh, preview));
   CLEAVE_RETURN_IF_ERROR(write("affected_edges.vtu", edges));
-  PreviewOptions look;
-  ApplySceneLook(input.scene, mesh, look);
-  ImpurityPictureOptions picture = options.picture;
-  picture.camera.up = look.camera.up;
-  picture.title = look.title;
-  CLEAVE_ASSIGN_OR_RETURN(const Image image,
-                          RenderImpurities(mesh, ShownImpurities(preview), picture));
-  CLEAVE_ASSIGN_OR_RETURN(const std::string png, EncodePng(image));
-  return write("impurity.png", png);
+  return write("impurity.png", picture);
 }
 
 absl::Status ShowImpurity(Program& program, const Options& options) {
@@ -120,10 +124,12 @@ absl::Status ShowImpurity(Program& program, const Options& options) {
   CheckAndOrientMesh(mesh);
   v1::PreviewImpurityResponse preview;
   if (options.server.address.empty()) {
-    CLEAVE_ASSIGN_OR_RETURN(preview, PreviewHere(input, mesh));
+    CLEAVE_ASSIGN_OR_RETURN(preview, PreviewHere(options, input, mesh));
   } else {
     CLEAVE_ASSIGN_OR_RETURN(preview, PreviewThere(program, options, input));
   }
+  const std::string picture = std::move(*preview.mutable_picture_png());
+  preview.clear_picture_png();  // goes to its file
   if (options.json) {
     PrintResult(MessageJson(preview));
   } else {
@@ -132,7 +138,7 @@ absl::Status ShowImpurity(Program& program, const Options& options) {
     PrintResult(ImpurityText(preview, relative));
   }
   if (options.out.empty()) return absl::OkStatus();
-  return WriteFiles(options, input, mesh, preview);
+  return WriteFiles(options, mesh, preview, picture);
 }
 
 }  // namespace
@@ -156,7 +162,8 @@ void AddImpurity(CLI::App& app, Program& program) {
   verb->add_option("--out", options->out,
                    "Write impurity.vtu, affected_edges.vtu and impurity.png here")
       ->type_name("DIR");
-  verb->add_option("--width", options->picture.width, "Pixels of the picture")
+  verb->add_option("--width", options->picture.width,
+                   "Pixels of the picture; a server draws at most 1920")
       ->check(CountWithin(16, kMaxImageSide))
       ->capture_default_str()
       ->type_name("PIXELS");

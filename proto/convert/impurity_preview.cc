@@ -2,6 +2,20 @@
 
 namespace cleave {
 
+void WritePictureOptions(const ImpurityPictureOptions& options, v1::PictureOptions& message) {
+  message.set_width(options.width);
+  if (options.camera.azimuth) message.set_azimuth(*options.camera.azimuth);
+  if (options.camera.elevation) message.set_elevation(*options.camera.elevation);
+}
+
+ImpurityPictureOptions PictureOptionsFromMessage(const v1::PictureOptions& message) {
+  ImpurityPictureOptions options;
+  if (message.has_width()) options.width = message.width();
+  if (message.has_azimuth()) options.camera.azimuth = message.azimuth();
+  if (message.has_elevation()) options.camera.elevation = message.elevation();
+  return options;
+}
+
 v1::PreviewImpurityResponse MessageFromPreview(const ImpurityPreview& preview, bool with_edges) {
   v1::PreviewImpurityResponse message;
   message.mutable_potencies()->Add(preview.potencies.begin(), preview.potencies.end());

@@ -378,6 +378,16 @@ class PythonClientTest(unittest.TestCase):
         cut = self.client.preview_impurity(scene, with_edges=True)
         np.testing.assert_array_equal(shown_impurities(cut) == 1, preview.potencies == 3)
 
+        # The server's own, of the same body.
+        self.assertEqual(cut.picture_png, b"")
+        for options, width in ({}, 960), ({"width": 100, "azimuth": 5, "elevation": 40}, 100):
+            drawn = self.client.preview_impurity(scene, picture=options).picture_png
+            self.assertEqual(drawn[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertEqual(int.from_bytes(drawn[16:20], "big"), width)
+        with self.assertRaises(CleaveError) as caught:
+            self.client.preview_impurity(scene, picture={"width": 0})
+        self.assertEqual([field for field, _ in caught.exception.faults], ["picture.width"])
+
         path = f"{self._folder.name}/drawn.png"
         write_png(path, picture)
         with open(path, "rb") as file:

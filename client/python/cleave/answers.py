@@ -65,6 +65,7 @@ class ImpurityPreview:
     weakenings: np.ndarray  # affected, what layers make their strength count
     strengths: np.ndarray  # affected, Pa
     warnings: list  # "field: what"
+    picture_png: bytes  # a PNG file, empty where no picture was asked for
 
 
 @dataclasses.dataclass(frozen=True)

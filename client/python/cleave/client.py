@@ -230,18 +230,22 @@ class Client:
             curves,
         )
 
-    def preview_impurity(self, scene, with_edges=False):
+    def preview_impurity(self, scene, with_edges=False, picture=None):
         """Bakes the impurities of a Scene message on its mesh; nothing is simulated.
 
         Returns an ImpurityPreview. Layers must hold what they are made of: the files that a layer may
         name are read by the command line only; `trace_drawing` makes curves of a picture.
+
+        picture: have the server draw the body, impurities in magenta on yellow, as a PNG file: a dict of
+        `width` in pixels (16 to 1920; default 960), `azimuth` and `elevation` of the camera in degrees; {}
+        for the defaults.
         """
         check_size(scene, self._most_bytes())
-        answer = self._call(
-            self._impurities.PreviewImpurity,
-            impurity_pb2.PreviewImpurityRequest(scene=scene, with_edges=with_edges),
-            seconds=300,
-        )
+        request = impurity_pb2.PreviewImpurityRequest(scene=scene, with_edges=with_edges)
+        if picture is not None:
+            request.picture.SetInParent()
+            request.picture.MergeFrom(impurity_pb2.PictureOptions(**picture))
+        answer = self._call(self._impurities.PreviewImpurity, request, seconds=300)
         return ImpurityPreview(
             np.array(answer.potencies),
             answer.edge_count,
@@ -252,6 +256,7 @@ class Client:
             np.array(answer.weakenings),
             np.array(answer.strengths),
             list(answer.warnings),
+            answer.picture_png,
         )
 
     def trace_drawing(self, pixels, threshold=0.5, bright=False, keep_width=False, tolerance=0.5):

@@ -56,9 +56,9 @@ constexpr const char* kServices[] = {"cleave.v1.AssetService",    "cleave.v1.Fra
                                      "cleave.v1.ServerService",   "cleave.v1.SessionService"};
 
 // As server.proto has them.
-constexpr const char* kFeatures[] = {"events", "impurity_preview", "latest",
-                                     "probe",  "region",           "render_mesh",
-                                     "rungs",  "surface",          "trace_drawing"};
+constexpr const char* kFeatures[] = {"events",  "impurity_picture", "impurity_preview", "latest",
+                                     "probe",   "region",           "render_mesh",      "rungs",
+                                     "surface", "trace_drawing"};
 
 v1::ServerInfo DescribeServer(const AssetLimits& assets) {
   v1::ServerInfo info;

@@ -46,6 +46,24 @@ class Impurities(CliTest):
             self.assertAlmostEqual(again["potencies"][node],
                                    max(potency, 2.5 if node in ends else 0))
 
+    def test_server_draws_the_same_picture(self):
+        _, address = self.serve()
+        scene = self.scene((BLOCK % 1).replace('"density"', '"tensile_strength": 3e4, "density"'))
+        pictures = []
+        for where in (), ("--server", address):
+            out = self.folder / f"out{len(where)}"
+            code, output, errors = cleave("impurity", scene, "--layer", json.dumps(STROKE), "--out", out,
+                                          "--width", "160", "--azimuth", "-40", "--json", *where)
+            self.assertEqual(code, 0, errors)
+            self.assertEqual(json.loads(output)["picture_png"], "")  # it is in its file
+            pictures.append((out / "impurity.png").read_bytes())
+        self.assertTrue(pictures[0].startswith(b"\x89PNG"))
+        self.assertEqual(pictures[0], pictures[1])
+        code, _, errors = cleave("impurity", scene, "--layer", json.dumps(STROKE), "--out", out,
+                                 "--width", "1921", "--server", address)
+        self.assertEqual(code, 3)
+        self.assertIn("picture.width: 1921 is outside [16, 1920] pixels", errors)
+
     def test_picture_is_stamped_on_a_mesh(self):
         # A black bar, 20 pixels long, in the middle of a white picture.
         rows = [[255] * 40 for _ in range(40)]
