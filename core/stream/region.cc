@@ -1,11 +1,25 @@
 #include "core/stream/region.h"
 
 #include <cstddef>
+#include <string>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/faults.h"
+#include "absl/strings/str_join.h"
 
 namespace cleave {
+
+void CheckBox(absl::string_view field, const std::array<Vec3, 2>& box, Faults& faults) {
+  const auto& [low, high] = box;
+  std::vector<std::string> allowed;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (low[axis] <= high[axis]) continue;
+    allowed.push_back(absl::StrCat("[", low[axis], ", inf) along ", std::string(1, "xyz"[axis])));
+  }
+  if (allowed.empty()) return;
+  faults.Error(absl::StrCat(field, ".max"),
+               absl::StrCat("(", absl::StrJoin(high, ", "), ") m is outside ",
+                            absl::StrJoin(allowed, ", "), ", where ", field, ".min begins"));
+}
 
 absl::Status CheckRegion(const Region& region, const StreamHeader& header, double tolerance) {
   Faults faults;
@@ -20,11 +34,7 @@ absl::Status CheckRegion(const Region& region, const StreamHeader& header, doubl
     faults.Error(absl::StrCat("nodes[", at, "]"),
                  absl::StrCat(node, " is outside [0, ", header.node_count, ")"));
   }
-  for (size_t axis = 0; region.box.has_value() && axis < 3; ++axis) {
-    const auto& [low, high] = *region.box;
-    if (low[axis] <= high[axis]) continue;
-    faults.Error("box", absl::StrCat("from ", low[axis], " to ", high[axis], " m has no inside"));
-  }
+  if (region.box.has_value()) CheckBox("box", *region.box, faults);
   return faults.ToStatus();
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
+#include "core/base/faults.h"
 #include "core/base/vec3.h"
 #include "core/stream/stream_header.h"
 
@@ -19,6 +21,9 @@ struct Region {
   std::optional<std::array<Vec3, 2>> box = std::nullopt;
   double outside_tolerance = 0;  // m, for the other pieces; at least twice that of the stream
 };
+
+// One fault, of field.max, for a box that holds nothing, along whichever axes.
+void CheckBox(absl::string_view field, const std::array<Vec3, 2>& box, Faults& faults);
 
 // Error: InvalidArgument with all that keeps this from being the region of a stream whose pieces
 // inside have this tolerance (m).

@@ -1,12 +1,11 @@
 #include "server/gateway/frame_choice.h"
 
 #include <algorithm>
-#include <string>
-#include <vector>
+#include <array>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "core/base/status.h"
+#include "core/stream/region.h"
 #include "proto/convert/rung.h"
 #include "server/gateway/errors.h"
 #include "server/session/encoding.h"
@@ -42,17 +41,10 @@ void CheckRegion(const v1::RegionOfInterest& region, Faults& faults) {
     if (low.size() != 3 || high.size() != 3) {
       faults.Error("region.box", "min and max have three coordinates each");
     } else {
-      std::vector<std::string> allowed;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (low[axis] <= high[axis]) continue;
-        allowed.push_back(
-            absl::StrCat("[", low[axis], ", inf) along ", std::string(1, "xyz"[axis])));
-      }
-      if (!allowed.empty()) {
-        faults.Error("region.box.max",
-                     absl::StrCat("(", absl::StrJoin(high, ", "), ") m is outside ",
-                                  absl::StrJoin(allowed, ", "), ", where region.box.min begins"));
-      }
+      std::array<Vec3, 2> box{};
+      std::copy(low.begin(), low.end(), box[0].begin());
+      std::copy(high.begin(), high.end(), box[1].begin());
+      CheckBox("region.box", box, faults);
     }
   }
   if (region.has_outside_rung() && !RungFromMessage(region.outside_rung()).has_value()) {
