@@ -31,6 +31,10 @@ inline Double4 Max(Double4 a, Double4 b) { return a > b ? a : b; }
 inline Double4 Abs(Double4 v) { return v < 0 ? -v : v; }
 inline double Sum(Double4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 inline double Dot(Double4 a, Double4 b) { return Sum(a * b); }
+inline Double4 Cross(Double4 a, Double4 b) {
+  return Double4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
+                 0};
+}
 // Of what a comparison gave, which compilers have different names for.
 template <typename Mask>
 requires(sizeof(Mask) == sizeof(Int64x4)) bool Any(Mask mask) {

@@ -81,8 +81,10 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
   // What the scene adds.
   if (scene.gravity) add("gravity", 0);
   if (IsDamped(scene)) {
-    add("damping", nodes * (2 * kDouble + 2 * kNodal) +  // rates, matrix diagonal, forces
-                       (scene.damping->stiffness_coefficient > 0 ? matrix_bytes : 0));
+    // Rates, matrix diagonal, forces; rigid steps and their pieces, as if every node were one.
+    const int64_t of_stiffness = matrix_bytes + nodes * (kInt + 8 * kNodal);
+    add("damping", nodes * (2 * kDouble + 2 * kNodal) +
+                       (scene.damping->stiffness_coefficient > 0 ? of_stiffness : 0));
   }
   if (!scene.motions.empty()) {
     int64_t bytes = nodes * 2 * kNodal;

@@ -12,11 +12,6 @@
 namespace cleave {
 namespace {
 
-Double4 Cross(Double4 a, Double4 b) {
-  return Double4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
-                 0};
-}
-
 double Determinant(Double4 a, Double4 b, Double4 c) { return Dot(a, Cross(b, c)); }
 
 // What all loads have in common: how strong they are.

@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace cleave {
-namespace {
-
-Double4 Cross(Double4 a, Double4 b) {
-  return Double4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
-                 0};
-}
-
-}  // namespace
 
 Keyframe PoseAt(const PrescribedMotion& motion, double time) {
   const auto& keys = motion.keyframes;

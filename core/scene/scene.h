@@ -340,9 +340,9 @@ struct Timing {
 // Rayleigh damping of the body: forces -(a M + b K) v of its mass M and its elastic stiffness K,
 // that of the start of the step without negative eigenvalues, as it has yielded and broken so far
 // (method note, section 7). A vibration of angular frequency w decays at the damping ratio
-// a / (2 w) + b w / 2, besides what backward Euler takes. b takes nothing of a translation and
-// little of a spin (core/solver/rayleigh_damping.h); a drags the body against the scene's
-// coordinates. What breaks edges is the elastic stress alone.
+// a / (2 w) + b w / 2, besides what backward Euler takes. b takes what deforms, and nothing of
+// what a piece moves and turns as a whole; a drags the body against the scene's coordinates. What
+// breaks edges is the elastic stress alone.
 struct Damping {
   double mass_coefficient = 0;       // a, 1/s
   double stiffness_coefficient = 0;  // b, s

@@ -177,12 +177,16 @@ double NewtonSolver::ElasticWork(const State& start, double dt, const NodalVecto
   }));
 }
 
-void NewtonSolver::BeginStep(const State& start, const NodalVector& displacements,
+void NewtonSolver::SetBroken(std::span<const uint8_t> broken) {
+  if (damping_) damping_->SetBroken(broken);
+}
+
+void NewtonSolver::BeginStep(const State& start, double dt, const NodalVector& displacements,
                              StepReport& report) {
   if (damping_) {
     ScopedTimer timer(report.assembly_seconds);
     ChooseBranches(start.displacements, BranchChoice::kStart);
-    damping_->BeginStep(start.displacements);
+    damping_->BeginStep(start, dt);
   }
   ChooseBranches(displacements, BranchChoice::kStart);
 }
@@ -275,7 +279,7 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
         for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
           trial_[node] = displacements[node] - start.displacements[node];
       });
-      damping_->SetMotion(trial_, dt, blocks_);
+      damping_->SetMotion(trial_, blocks_);
     }
     Evaluate(start, dt, displacements, 0);
     initial_elastic_energy_ = elastic_energy_;

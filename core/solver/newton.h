@@ -43,10 +43,13 @@ class NewtonSolver {
   // coordinate of the others is given.
   void SetRuns(std::span<const std::array<int64_t, 2>> runs);
 
-  // To be called before the first Solve of a time step from `start`, at the displacements (m) that
-  // it starts from: takes the stiffness that damps at `start`, and chooses the branches of energies
-  // that jump. Solves leave them for lower ones only.
-  void BeginStep(const State& start, const NodalVector& displacements, StepReport& report);
+  // Which edges are broken now, where that has changed.
+  void SetBroken(std::span<const uint8_t> broken);
+  // To be called before the first Solve of a time step of `dt` (s) from `start`, at the
+  // displacements (m) that it starts from: takes the stiffness that damps at `start`, and chooses
+  // the branches of energies that jump. Solves leave them for lower ones only.
+  void BeginStep(const State& start, double dt, const NodalVector& displacements,
+                 StepReport& report);
 
   // Starts from `displacements` (m), whose given coordinates stay as they are, and leaves the
   // solution there. Stops when the free force residual is at most quality.residual_tolerance of the
@@ -71,6 +74,8 @@ class NewtonSolver {
   double ElasticWork(const State& start, double dt, const NodalVector& displacements);
   // J, that Rayleigh damping takes out along the same way; 0 where there is none.
   double DampingLoss(const State& start, const NodalVector& displacements);
+  // J, what the incremental potential has of it there.
+  double damping_potential() const { return damping_ ? damping_->Potential(0) : 0; }
   // J, where that Solve started.
   double initial_elastic_energy() const { return initial_elastic_energy_; }
 

@@ -26,15 +26,23 @@ RayleighDamping::RayleighDamping(const Model& model)
   // Unknowns of colliders, which come after the nodes, move freely.
   for (size_t node = 0; node < static_cast<size_t>(model.node_count()); ++node)
     rates_[node] = model.damping->mass_coefficient * model.masses[node];
-  if (model.damping->stiffness_coefficient > 0)
+  if (model.damping->stiffness_coefficient > 0) {
     resistance_.emplace(model.incidence->edges, model.unknown_count());
+    rigid_steps_.emplace(model);
+  }
 }
 
-void RayleighDamping::BeginStep(const NodalVector& displacements) {
+void RayleighDamping::SetBroken(std::span<const uint8_t> broken) {
+  if (rigid_steps_) rigid_steps_->SetBroken(broken);
+}
+
+void RayleighDamping::BeginStep(const State& start, double dt) {
+  dt_ = dt;
   if (!resistance_) return;
+  rigid_steps_->BeginStep(start, dt);
   EdgeBlocks& blocks = resistance_->Clear();
   for (const auto& term : model_.tet_terms)
-    term->AddStiffness(displacements, Curvature::kSemidefinite, blocks);
+    term->AddStiffness(start.displacements, Curvature::kSemidefinite, blocks);
   const auto coefficient = static_cast<float>(model_.damping->stiffness_coefficient);
   ParallelFor(static_cast<int64_t>(blocks.size()), 1 << 16, [&](int64_t begin, int64_t end) {
     for (auto k = static_cast<size_t>(begin); k < static_cast<size_t>(end); ++k)
@@ -43,23 +51,42 @@ void RayleighDamping::BeginStep(const NodalVector& displacements) {
   resistance_->Finish(rates_);
 }
 
-void RayleighDamping::SetForces(const NodalVector& moved, NodeBlocks& blocks,
+void RayleighDamping::SetForces(const NodalVector& way, NodeBlocks& blocks,
                                 NodalVector& forces) const {
   blocks.Run([&](int64_t begin, int64_t end) {
     if (resistance_) {
-      resistance_->Multiply(moved, dt_, begin, end, forces);
+      resistance_->Multiply(way, dt_, begin, end, forces);
       return;
     }
     for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
-      forces[node] = rates_[node] / dt_ * moved[node];
+      forces[node] = rates_[node] / dt_ * way[node];
   });
 }
 
-void RayleighDamping::SetMotion(const NodalVector& moved, double dt, NodeBlocks& blocks) {
-  dt_ = dt;
+void RayleighDamping::SetMotion(NodalVector& moved, NodeBlocks& blocks) {
+  slope_ = half_curvature_ = 0;
+  if (!rigid_steps_) {
+    SetForces(moved, blocks, forces_);
+    potential_ = 0.5 * Work(forces_, moved, blocks);
+    return;
+  }
+  const NodalVector& ways = rigid_steps_->ways();
+  ParallelFor(static_cast<int64_t>(moved.size()), 4096, [&](int64_t begin, int64_t end) {
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node)
+      moved[node] -= ways[node];
+  });
   SetForces(moved, blocks, forces_);
   potential_ = 0.5 * Work(forces_, moved, blocks);
-  slope_ = half_curvature_ = 0;
+  // Of mass the rest of the way counts, too.
+  potential_ += Sum(blocks.Sum([&](int64_t begin, int64_t end) {
+    Double4 sum = Splat(0);
+    for (auto node = static_cast<size_t>(begin); node < static_cast<size_t>(end); ++node) {
+      const Double4 push = rates_[node] / dt_ * ways[node];
+      sum += push * (moved[node] + 0.5 * ways[node]);
+      forces_[node] += push;
+    }
+    return sum;
+  }));
 }
 
 void RayleighDamping::SetSearch(const NodalVector& search, NodeBlocks& blocks) {
@@ -87,7 +114,7 @@ void RayleighDamping::AddTo(StiffnessMatrix& matrix, const std::vector<double>& 
 int64_t RayleighDamping::bytes() const {
   return static_cast<int64_t>((rates_.size() + diagonal_.size()) * sizeof(double) +
                               (forces_.size() + search_forces_.size()) * sizeof(Double4)) +
-         (resistance_ ? resistance_->bytes() : 0);
+         (resistance_ ? resistance_->bytes() + rigid_steps_->bytes() : 0);
 }
 
 }  // namespace cleave

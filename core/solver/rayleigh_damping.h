@@ -3,41 +3,48 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/double4.h"
 #include "core/model/model.h"
 #include "core/model/nodal_vector.h"
 #include "core/solver/block_sums.h"
+#include "core/solver/rigid_steps.h"
 #include "core/solver/stiffness_matrix.h"
 
 namespace cleave {
 
 // Rayleigh damping of a body in a backward Euler step from x_n to x: the forces
 //
-//   -C (x - x_n) / dt,   C = a M + b K_n,
+//   -(a M (x - x_n) + b K_n (x - y)) / dt
 //
-// of the incremental potential (x - x_n)^T C (x - x_n) / (2 dt). M is the mass of the nodes, K_n
-// the elastic stiffness at x_n without negative eigenvalues, so that C is constant in the step and
-// no motion gains energy. Forces are those of the blocks of K_n as stored (EdgeBlocks), so b
-// resists no translation and keeps momentum to the rounding of these floats. Of angular momentum it
-// takes what K_n does: internal forces f turn with the body, K_n (w x r) = w x f, so that a spin w
-// decays at the rate b w^2, besides what a step turns beyond first order. The potential is summed
-// up along the way of a solve, which is exact for a quadratic one: from x_n it would be lost in the
-// rounding of the blocks where a body flies fast. Source: method note, section 7. Not thread-safe;
-// loops run on the caller's TBB arena and give the same bits for any number of threads.
+// of a quadratic potential. M is the mass of the nodes, K_n the elastic stiffness at x_n without
+// negative eigenvalues, and y where each piece gets that goes on as a rigid one (RigidSteps). That
+// is where we depart from the note, which has x_n for y: K_n takes a turn by an angle t for a
+// stretch of t^2 / 2, and b would stop in a few steps what is stiff and spins. By convexity the
+// forces take no less than the potential at x less that at x_n, so that they give energy back at
+// most where something stops a spin within a step, and then no more than the latter.
+//
+// Forces of b are those of the blocks of K_n as stored (EdgeBlocks), so it resists no translation
+// and keeps momentum to the rounding of these floats. The potential is summed up along the way of a
+// solve, which is exact for a quadratic one: from its start it would be lost in the rounding of the
+// blocks where a body flies fast. Source: method note, section 7. Not thread-safe; loops run on the
+// caller's TBB arena and give the same bits for any number of threads.
 class RayleighDamping {
  public:
   // `model.damping` must be set; `model` must outlive this object.
   explicit RayleighDamping(const Model& model);
 
-  // Sets C at the displacements (m) that a step starts from, where the branches of energies are
+  // Which edges are broken now, where that has changed.
+  void SetBroken(std::span<const uint8_t> broken);
+  // Sets K_n and y for a step of `dt` (s) from `start`, at which the branches of energies are
   // chosen.
-  void BeginStep(const NodalVector& displacements);
+  void BeginStep(const State& start, double dt);
 
-  // Where a solve starts: unknowns have `moved` (m) in `dt` (s). Of the next solves, the nodes of
-  // `blocks` count.
-  void SetMotion(const NodalVector& moved, double dt, NodeBlocks& blocks);
+  // Where a solve of that step starts: unknowns have `moved` (m), which is overwritten. Of the next
+  // solves, the nodes of `blocks` count.
+  void SetMotion(NodalVector& moved, NodeBlocks& blocks);
   // Where it searches (m).
   void SetSearch(const NodalVector& search, NodeBlocks& blocks);
   // It went `share` of the way.
@@ -51,25 +58,27 @@ class RayleighDamping {
     return forces_[unknown] + share * search_forces_[unknown];
   }
 
-  // Adds C / dt, of the last SetMotion, to a matrix whose inertia is `inertia`, kg/s^2.
+  // Adds (a M + b K_n) / dt to a matrix whose inertia is `inertia`, kg/s^2.
   void AddTo(StiffnessMatrix& matrix, const std::vector<double>& inertia);
 
   int64_t bytes() const;
 
  private:
-  // Sets the forces of `moved` in `dt_`, N.
-  void SetForces(const NodalVector& moved, NodeBlocks& blocks, NodalVector& forces) const;
+  // Sets (a M + b K_n) / dt times a way (m), N.
+  void SetForces(const NodalVector& way, NodeBlocks& blocks, NodalVector& forces) const;
 
   const Model& model_;
-  std::vector<double> rates_;                  // a M, kg/s, an unknown each
-  std::optional<StiffnessMatrix> resistance_;  // C, where b is above 0
-  std::vector<double> diagonal_;               // kg/s^2, inertia and a M / dt
-  double dt_ = 0;                              // s
-  NodalVector forces_;                         // N, C (x - x_n) / dt
-  NodalVector search_forces_;                  // N, C search / dt
-  double potential_ = 0;                       // J
-  double slope_ = 0;                           // J, of it along the search
-  double half_curvature_ = 0;                  // J
+  std::vector<double> rates_;  // a M, kg/s, an unknown each
+  // Where b is above 0: a M + b K_n, and what tells y.
+  std::optional<StiffnessMatrix> resistance_;
+  std::optional<RigidSteps> rigid_steps_;
+  std::vector<double> diagonal_;  // kg/s^2, inertia and a M / dt
+  double dt_ = 0;                 // s
+  NodalVector forces_;            // N, what the motion is resisted with
+  NodalVector search_forces_;     // N, (a M + b K_n) / dt times the search
+  double potential_ = 0;          // J
+  double slope_ = 0;              // J, of it along the search
+  double half_curvature_ = 0;     // J
 };
 
 }  // namespace cleave

@@ -18,11 +18,6 @@ constexpr double kUnbalanced = 0.05;
 // In place of 0 and 1 in asleep_, when nobody has been told yet.
 constexpr uint8_t kUntold = 2;
 
-Double4 Cross(Double4 a, Double4 b) {
-  return Double4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0],
-                 0};
-}
-
 }  // namespace
 
 Resting::Resting(const Model& model)

@@ -82,9 +82,10 @@ void Stepper::Prepare(double start, State& state) {
     damage_told_ = breaking_->fracture().damage_count();
     for (const auto& term : model_.node_terms) term->SetDamage(breaking_->SolidFactors());
   }
-  if (resting_ && breaking_ && resting_told_ != breaking_->broken_edge_count()) {
-    resting_told_ = breaking_->broken_edge_count();
-    resting_->SetBroken(breaking_->fracture().edge_broken());
+  if (breaking_ && pieces_told_ != breaking_->broken_edge_count()) {
+    pieces_told_ = breaking_->broken_edge_count();
+    if (resting_) resting_->SetBroken(breaking_->fracture().edge_broken());
+    newton_.SetBroken(breaking_->fracture().edge_broken());
   }
   if (!releases_) return;
   const std::vector<uint8_t> held = state.released;
@@ -140,7 +141,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   for (size_t node = 0; node < displacements_.size(); ++node)
     displacements_[node] = state.displacements[node] + dt * state.velocities[node];
   ApplyMotions(model_, state.released, end, displacements_);
-  newton_.BeginStep(state, displacements_, report);
+  newton_.BeginStep(state, dt, displacements_, report);
   CLEAVE_RETURN_IF_ERROR(newton_.Solve(state, dt, stop, displacements_, report));
   // Motions move the body as it was, then it breaks: that way work and fracture energy match. What
   // integration loses is the elastic energy beyond its tangent, the squared change of velocity and
@@ -151,6 +152,7 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   const KineticEnergies intact = MovingEnergies(dt, state);
   const double node_balance = NodeTermBalance(state);
   const double damped = newton_.DampingLoss(state, displacements_);
+  const double damping_potential = newton_.damping_potential();
   KineticEnergies moving = intact;
   double fracture_energy = 0;
   std::vector<EdgeBreak> breaks;
@@ -181,8 +183,9 @@ absl::Status Stepper::SolveStep(double start, double end, const StopFlag& stop, 
   report.edge_breaks.insert(report.edge_breaks.end(), breaks.begin(), breaks.end());
   report.fracture_energy += fracture_energy;
   report.plastic_work += flow.work;
-  // The potential that re-solves lower has half of what damping takes, as of viscosity above.
-  report.damping_dissipation += 0.5 * (damped + newton_.DampingLoss(state, displacements_));
+  // The potential that re-solves lower counts what they take back of damping's as lost to
+  // integration.
+  report.damping_dissipation += damped - (damping_potential - newton_.damping_potential());
   report.integration_dissipation += integration;
   report.external_work += motion_work + GravityWork(state);
   for (size_t node = 0; node < displacements_.size(); ++node)
@@ -347,7 +350,7 @@ absl::Status Stepper::Restore(ByteReader& in) {
   for (const auto& term : model_.node_terms)
     CLEAVE_RETURN_IF_ERROR(RestorePart(*term, term->name(), in));
   if (resting_) CLEAVE_RETURN_IF_ERROR(RestorePart(*resting_, "sleep", in));
-  resting_told_ = -1;
+  pieces_told_ = -1;
   elastic_energy_ = elastic_energy;
   return absl::OkStatus();
 }

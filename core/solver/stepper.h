@@ -90,7 +90,7 @@ class Stepper {
   std::optional<Breaking> breaking_;
   std::optional<Releases> releases_;  // where something may be released
   std::optional<Resting> resting_;    // where pieces may sleep
-  int64_t resting_told_ = -1;         // broken edges that its pieces are of; -1: none
+  int64_t pieces_told_ = -1;          // broken edges that sleep and damping know; -1: none
   std::vector<Influence> influences_;
   double left_out_energy_ = 0;      // J, elastic, of what sleeps
   std::vector<uint8_t> fixed_for_;  // State::released that the solver's fixed nodes are of

@@ -76,7 +76,7 @@ TEST(Footprint, EachFeatureAddsItsPartAndNothingElse) {
   EXPECT_EQ(BytesOf(Plan(scene), "damping"), 1000 * 80);
   scene.damping = Damping{0, 1};
   expect_adds(scene, "damping");
-  EXPECT_EQ(BytesOf(Plan(scene), "damping"), 1000 * 80 + BytesOf(base, "stiffness matrix"));
+  EXPECT_EQ(BytesOf(Plan(scene), "damping"), 1000 * 340 + BytesOf(base, "stiffness matrix"));
   scene = minimal;
   AddMotion(scene, "any");
   expect_adds(scene, "motions");
