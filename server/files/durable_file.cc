@@ -104,8 +104,7 @@ absl::StatusOr<std::string> ReadFile(const std::string& path, int64_t max_bytes)
   CLEAVE_ASSIGN_OR_RETURN(const FileDescriptor file, OpenFile(path, O_RDONLY));
   CLEAVE_ASSIGN_OR_RETURN(const int64_t size, FileSize(file, path));
   if (size > max_bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(path, " has ", size, " bytes, more than ", max_bytes));
+    return absl::DataLossError(absl::StrCat(path, " has ", size, " bytes, more than ", max_bytes));
   }
   return ReadAt(file, 0, size, path);
 }

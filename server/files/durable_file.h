@@ -46,7 +46,8 @@ absl::StatusOr<int64_t> FileSize(const FileDescriptor& file, absl::string_view p
 absl::Status SyncData(const FileDescriptor& file, absl::string_view path);
 absl::Status Truncate(const FileDescriptor& file, int64_t size, absl::string_view path);
 
-// The whole file; ResourceExhausted when it is larger than `max_bytes`.
+// The whole file; DataLoss when it is larger than `max_bytes`, which no file is that this wrote:
+// not ResourceExhausted, which tells of a full disk.
 absl::StatusOr<std::string> ReadFile(const std::string& path, int64_t max_bytes);
 
 // Replaces the file in one step: written aside, synced, renamed, directory synced. After a crash
