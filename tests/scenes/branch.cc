@@ -12,27 +12,26 @@ namespace cleave {
 namespace {
 
 constexpr BranchShape kShape;
-constexpr double kGrip = 0.06;  // m at each end
 
-void AddTipMotion(const std::vector<Keyframe>& bend, Demonstration& made) {
+void AddTipMotion(const std::vector<Keyframe>& bend, double grip, Demonstration& made) {
   made.pull_motion = AddMotion(made.scene, "tip", {true, true, true}, bend);
   made.pull_direction = {1, 0, 0};
   Motion& motion = made.scene.motions.back();
-  motion.rotation_center = {0, 0, kShape.length - kGrip};
+  motion.rotation_center = {0, 0, kShape.length - grip};
   motion.rotation_axis = {0, 1, 0};
 }
 
-void Tear(Demonstration& made) {
+void Tear(double grip, Demonstration& made) {
   constexpr double kSeconds = 0.5;
   auto bend = PullBy({0.35, 0, 0.02}, kSeconds);
   bend.back().rotation = 0.9;
-  AddTipMotion(bend, made);
+  AddTipMotion(bend, grip, made);
   SetPace(made.scene, kSeconds, 50);
   made.frames_after_separation = 6;
 }
 
 // The tip is bent ever faster, so that what is torn off leaves without a jerk, and let go.
-void TearOff(Demonstration& made) {
+void TearOff(double grip, Demonstration& made) {
   constexpr double kBendSeconds = 2;
   constexpr int kSteps = 10;
   std::vector<Keyframe> bend;
@@ -41,7 +40,7 @@ void TearOff(Demonstration& made) {
     const double share = time * time;
     bend.push_back({time * kBendSeconds, Vec3{0.35 * share, 0, 0}, 0.9 * share});
   }
-  AddTipMotion(bend, made);
+  AddTipMotion(bend, grip, made);
   Release torn_off;
   torn_off.separated_node_sets = {"foot", "tip"};
   made.scene.motions.back().release = torn_off;
@@ -87,14 +86,14 @@ absl::StatusOr<Demonstration> MakeBranch(const Setting& setting) {
   return MakeBranchOf(std::move(mesh), cell_size, setting);
 }
 
-Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting) {
+Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting, double grip) {
   const bool damp = setting.variant.starts_with("damp");
   const bool falls = setting.variant.ends_with("-fall");
   Demonstration made;
   made.mesh = std::move(mesh);
   made.cell_size = cell_size;
   made.fibres.assign(made.mesh.tets.size(), Vec3{0, 0, 1});
-  made.rest_length = kShape.length - 2 * kGrip;
+  made.rest_length = kShape.length - 2 * grip;
 
   Scene& scene = made.scene;
   scene.name = damp ? "damp branch" : "dry branch";
@@ -122,16 +121,17 @@ Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& settin
   }
   scene.impurities = water;
 
-  made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[2] < kGrip; });
-  made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[2] > kShape.length - kGrip; });
+  made.grip = NodesWhere(made.mesh, [grip](const Vec3& x) { return x[2] < grip; });
+  made.pulled =
+      NodesWhere(made.mesh, [grip](const Vec3& x) { return x[2] > kShape.length - grip; });
   AddNodeSet(scene, "foot", made.grip);
   AddNodeSet(scene, "tip", made.pulled);
   AddMotion(scene, "foot");
   if (falls) {
-    TearOff(made);
+    TearOff(grip, made);
     LetFall(scene);
   } else {
-    Tear(made);
+    Tear(grip, made);
   }
   return made;
 }

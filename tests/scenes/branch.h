@@ -13,8 +13,10 @@ namespace cleave {
 // when it is torn off and falls across the edge of a stone.
 absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
 // The same of another body along z from the origin to kBranchLength, about kBranchDiameter thick,
-// of cells of that size (m); the setting's layout and coarseness count for nothing.
-Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting);
+// of cells of that size (m), held by so much of each end (m); the setting's layout and coarseness
+// count for nothing.
+Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& setting,
+                           double grip = 0.06);
 inline constexpr double kBranchLength = 0.6;      // m
 inline constexpr double kBranchDiameter = 0.086;  // m, the mean
 
