@@ -77,7 +77,7 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
       if (between >= 0) graph_.Prefetch(between);
     }
     // Places that came by lately, since most come by several times.
-    std::array<int32_t, 128> recent;
+    std::array<int32_t, 512> recent;
     recent.fill(-1);
     for (size_t k = 0; k < nearest.count(); ++k) {
       recent[static_cast<size_t>(nearest[k]) % recent.size()] = nearest[k];
@@ -106,14 +106,16 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
       const bool is_largest = size + 1 == kCubeSizes || cubes.bits() == kMortonBits;
       reach = static_cast<Reach>(kInSpace + size);
       const CubesAround around(order.codes[index], cubes.bits());
-      for (const uint64_t cube : around.cubes()) cubes.Prefetch(cube);
+      for (const CubesAround::Some& some : around.blocks()) cubes.Prefetch(some.block);
       std::array<std::span<const int32_t>, 27> found;
       size_t count = 0;
       size_t places = 0;
-      for (const uint64_t cube : around.cubes()) {
-        found[count] = cubes.In(cube);
-        places += found[count].size();
-        __builtin_prefetch(found[count++].data());
+      for (const CubesAround::Some& some : around.blocks()) {
+        cubes.ForCubes(some, [&](std::span<const int32_t> in_cube) {
+          found[count++] = in_cube;
+          places += in_cube.size();
+          __builtin_prefetch(in_cube.data());
+        });
       }
       if (places < kEnough && !is_largest) continue;
       nearest.Clear();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "core/base/counter_rng.h"
@@ -52,7 +53,12 @@ TEST(CubeIndex, CubesAroundStayInTheGrid) {
       const CubesAround around(CodeOf(cube) << (3 * bits), bits);
       std::vector<uint64_t> expected;
       for (const Cube& other : Around(cube, side)) expected.push_back(CodeOf(other));
-      std::vector<uint64_t> found(around.cubes().begin(), around.cubes().end());
+      std::vector<uint64_t> found;
+      for (const CubesAround::Some& some : around.blocks()) {
+        for (uint64_t at = 0; at < 8; ++at) {
+          if ((some.cubes >> at & 1) != 0) found.push_back(8 * some.block + at);
+        }
+      }
       std::sort(expected.begin(), expected.end());
       std::sort(found.begin(), found.end());
       ASSERT_EQ(found, expected) << bits << " " << round;
@@ -99,16 +105,33 @@ TEST(CubeIndex, GivesWhatWasAddedOfEachCube) {
   });
   constexpr int kBits = 3;
   CubeIndex index(places, kBits);
+  const auto in_cube = [&](uint64_t cube) {
+    std::vector<int32_t> found;
+    index.ForCubes({cube / 8, static_cast<uint8_t>(1u << cube % 8)},
+                   [&](std::span<const int32_t> some) {
+                     found.insert(found.end(), some.begin(), some.end());
+                   });
+    return found;
+  };
   const auto expect = [&](int32_t every) {
+    std::vector<int32_t> all;
     for (uint64_t cube = 0; cube < 512; ++cube) {
       std::vector<int32_t> expected;
       for (const auto& [code, place] : places) {
         if (code >> (3 * kBits) == cube && place % every == 0) expected.push_back(place);
       }
-      const std::span<const int32_t> found = index.In(cube);
-      ASSERT_EQ(std::vector<int32_t>(found.begin(), found.end()), expected) << cube;
+      ASSERT_EQ(in_cube(cube), expected) << cube;
+      all.insert(all.end(), expected.begin(), expected.end());
     }
-    EXPECT_TRUE(index.In(1u << 20).empty());
+    EXPECT_TRUE(in_cube(1u << 20).empty());
+    // Cubes of a block in turn, as one by one.
+    std::vector<int32_t> found;
+    for (uint64_t block = 0; block < 64; ++block) {
+      index.ForCubes({block, 0xFF}, [&](std::span<const int32_t> some) {
+        found.insert(found.end(), some.begin(), some.end());
+      });
+    }
+    ASSERT_EQ(found, all);
   };
   expect(1);
   index.Clear();
