@@ -271,6 +271,10 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
     }
     return;
   }
+  if (header_.is_surface()) {
+    ShowVisible();
+    return;
+  }
   const double unit = header_.UnitOf(state_.tolerance);
   const Vec3 origin = header_.origin;
   const int32_t* nodes =
@@ -284,21 +288,25 @@ void FrameDecoder::Accept(StreamState& next, const FrameHeader& frame) {
       }
     }
   });
-  if (header_.is_surface()) ShowVisible();
 }
 
+// Hidden nodes are where the first visible one of their piece is.
 void FrameDecoder::ShowVisible() {
   const Stencils& stencils = interpolation_->stencils();
   const std::vector<int32_t>& nodes = interpolation_->order().nodes;
-  frame_.visible.assign(nodes.size(), 0);
+  const double unit = header_.UnitOf(state_.tolerance);
+  const Vec3 origin = header_.origin;
+  frame_.visible.resize(nodes.size());
   ParallelFor(static_cast<int64_t>(nodes.size()), 4096, [&](int64_t begin, int64_t end) {
     for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
       const auto node = static_cast<size_t>(nodes[static_cast<size_t>(place)]);
-      if (stencils.visible()->Has(place)) {
-        frame_.visible[node] = 1;
-      } else if (const int32_t leader = stencils.LeaderOf(stencils.pieces()[place]); leader >= 0) {
-        frame_.positions[node] =
-            frame_.positions[static_cast<size_t>(nodes[static_cast<size_t>(leader)])];
+      const bool is_visible = stencils.visible()->Has(place);
+      const int32_t leader = is_visible ? place : stencils.LeaderOf(stencils.pieces()[place]);
+      const auto at = static_cast<size_t>(leader >= 0 ? leader : place);
+      frame_.visible[node] = is_visible ? 1 : 0;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        frame_.positions[node][axis] =
+            origin[axis] + static_cast<double>(state_.positions[3 * at + axis]) * unit;
       }
     }
   });
