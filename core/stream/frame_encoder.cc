@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/run_both.h"
 #include "core/base/status.h"
 #include "core/stream/exact_positions.h"
 #include "core/stream/section_coder.h"
@@ -102,10 +103,9 @@ void FrameEncoder::PlaceRegion() {
 }
 
 absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
-  const bool goes_on = state_.frame >= 0 && epoch_ == state_.epoch;
-  if (frame.frame < 0 || (goes_on && frame.frame <= state_.frame)) {
+  if (frame.frame < 0 || (GoesOn() && frame.frame <= state_.frame)) {
     return absl::InvalidArgumentError(absl::StrCat("frame ", frame.frame, " does not follow frame ",
-                                                   goes_on ? state_.frame : -1));
+                                                   GoesOn() ? state_.frame : -1));
   }
   if (!std::isfinite(frame.time)) {
     return absl::InvalidArgumentError(absl::StrCat("time of ", frame.time, " s is not finite"));
@@ -121,8 +121,11 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
   if (!frame.visible.empty()) {
     return absl::InvalidArgumentError("the positions of some nodes are not known");
   }
-  const std::vector<int32_t>& edges = frame.broken_edges;
-  if (goes_on && edges == state_.broken_edges) return absl::OkStatus();
+  return absl::OkStatus();
+}
+
+absl::Status FrameEncoder::CheckEdges(const std::vector<int32_t>& edges) const {
+  if (GoesOn() && edges == state_.broken_edges) return absl::OkStatus();
   for (size_t at = 0; at < edges.size(); ++at) {
     if (edges[at] < 0 || static_cast<uint64_t>(edges[at]) >= header_.edge_count ||
         (at > 0 && edges[at] <= edges[at - 1])) {
@@ -131,8 +134,8 @@ absl::Status FrameEncoder::CheckFrame(const Frame& frame) const {
                                                      header_.edge_count, ")"));
     }
   }
-  if (goes_on && !std::includes(edges.begin(), edges.end(), state_.broken_edges.begin(),
-                                state_.broken_edges.end())) {
+  if (GoesOn() && !std::includes(edges.begin(), edges.end(), state_.broken_edges.begin(),
+                                 state_.broken_edges.end())) {
     return absl::InvalidArgumentError(
         "an edge that was broken is no longer; that needs a new epoch");
   }
@@ -197,7 +200,11 @@ void FrameEncoder::AppendCheckpoint(std::span<const int32_t> edges, FrameHeader&
 
 absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
   CLEAVE_RETURN_IF_ERROR(CheckFrame(frame));
-  CLEAVE_RETURN_IF_ERROR(Quantise(frame.positions));
+  absl::Status edges, quantised;
+  RunBoth([&] { edges = CheckEdges(frame.broken_edges); },
+          [&] { quantised = Quantise(frame.positions); });
+  CLEAVE_RETURN_IF_ERROR(edges);
+  CLEAVE_RETURN_IF_ERROR(quantised);
 
   const bool key = state_.frame < 0 || epoch_ != state_.epoch || tolerance_ != state_.tolerance ||
                    frame.frame % header_.keyframe_interval == 0;
@@ -227,12 +234,26 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     if (interpolation_.has_value()) return interpolation_->AllHold(state_);
     return exact() ? next_exact_ == state_.exact : next_ == state_.positions;
   };
-  const auto set_broken = [&] { interpolation_->SetBroken(key, frame.broken_edges, state_); };
+  const auto append_broken = [&] {
+    std::vector<int32_t> newly_broken;
+    std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(),
+                        state_.broken_edges.begin(), state_.broken_edges.end(),
+                        std::back_inserter(newly_broken));
+    AppendTopology(SectionType::kTopologyDelta, newly_broken, header, body);
+  };
+  const auto set_broken = [&] {
+    if (interpolation_.has_value()) interpolation_->SetBroken(key, frame.broken_edges, state_);
+  };
+  const bool lists = breaks && !key;
   // What holds depends on the pieces, or on what is in view.
   const bool ahead = header_.has_regions() || header_.is_surface();
-  if (ahead) set_broken();
+  if (lists) {
+    RunBoth(append_broken, set_broken);
+  } else if (ahead) {
+    set_broken();
+  }
   const bool holds = !key && !breaks && all_hold();
-  if (interpolation_.has_value() && !ahead && !holds) set_broken();
+  if (!lists && !ahead && !holds) set_broken();
   if (key) {
     header.kind = FrameKind::kKey;
     AppendCheckpoint(frame.broken_edges, header, body);
@@ -243,11 +264,6 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     next_exact_ = state_.exact;
   } else {
     header.kind = FrameKind::kDelta;
-    std::vector<int32_t> newly_broken;
-    std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(),
-                        state_.broken_edges.begin(), state_.broken_edges.end(),
-                        std::back_inserter(newly_broken));
-    AppendTopology(SectionType::kTopologyDelta, newly_broken, header, body);
     append_positions();
   }
 

@@ -71,7 +71,9 @@ class FrameEncoder {
   FrameEncoder() = default;
   void PlaceRegion();
   bool exact() const { return header_.predictor_id == kPredictorExact; }
+  bool GoesOn() const { return state_.frame >= 0 && epoch_ == state_.epoch; }
   absl::Status CheckFrame(const Frame& frame) const;
+  absl::Status CheckEdges(const std::vector<int32_t>& edges) const;
   absl::Status Quantise(const std::vector<Vec3>& positions);
   // In temporal_encoder.cc.
   absl::Status QuantiseOnGrid(const std::vector<Vec3>& positions);

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "core/base/run_both.h"
+
 namespace cleave {
 namespace {
 
@@ -132,7 +134,7 @@ void InterpolationPredictor::Prepare(bool key, double tolerance, std::span<const
   const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
   const bool grid_is_new = SetGrid(tolerance);
   if (!key) {
-    for (const std::span<int32_t> positions : {last, before}) MakeHistory(positions);
+    RunBoth([&] { MakeHistory(last); }, [&] { MakeHistory(before); });
   }
   MakeDetails(history_is_new || grid_is_new ? places() : touched, last, before);
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/lanes.h"
 #include "core/base/parallel.h"
+#include "core/base/run_both.h"
 
 namespace cleave {
 namespace {
@@ -61,9 +62,11 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, cons
                VisiblePlaces(order, mesh.edges, mesh.tets)) {}
 
 void Stencils::Touch(int32_t place, Change change) {
-  // Several threads may say so, and the same, of one place.
-  std::atomic_ref<Change>(changes_[static_cast<size_t>(place)])
-      .store(change, std::memory_order_relaxed);
+  // Several threads may say so of one place.
+  const std::atomic_ref<Change> greatest(changes_[static_cast<size_t>(place)]);
+  Change was = greatest.load(std::memory_order_relaxed);
+  while (was < change && !greatest.compare_exchange_weak(was, change, std::memory_order_relaxed)) {
+  }
 }
 
 // Breaks only take places out of a search's reach. So a stencil stays as it is while all of its
@@ -121,17 +124,34 @@ void Stencils::TouchAll() {
   }
 }
 
+// Appends the places whose mark is not 0, ascending.
+void Stencils::ListMarked(std::span<const uint8_t> marks, std::vector<int32_t>& places) {
+  std::array<int32_t, 256> some;
+  for (size_t begin = 0; begin < marks.size(); begin += some.size()) {
+    const size_t end = std::min(marks.size(), begin + some.size());
+    size_t count = 0;
+    for (size_t place = begin; place < end; ++place) {  // without a branch, as nobody could predict
+      some[count] = static_cast<int32_t>(place);
+      count += static_cast<size_t>(marks[place] != 0);
+    }
+    places.insert(places.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+}
+
 // Lists what was touched, and says where to search for it.
 void Stencils::TakeTouched() {
-  for (size_t place = 0; place < changes_.size(); ++place) {
-    const Change change = changes_[place];
-    if (change == kNone) continue;
-    changes_[place] = kNone;
-    if (visible_ && !visible_->Has(static_cast<int32_t>(place))) continue;
-    if (change == kSearchInSpace) reaches_[place] = kInSpace;
-    if (change == kSearchAnew) reaches_[place] = kOneEdge;
-    touched_.push_back(static_cast<int32_t>(place));
+  ListMarked(changes_, touched_);
+  size_t count = 0;
+  for (const int32_t place : touched_) {
+    const auto index = static_cast<size_t>(place);
+    const Change change = changes_[index];
+    if (change == kSearchInSpace) reaches_[index] = kInSpace;
+    if (change == kSearchAnew) reaches_[index] = kOneEdge;
+    touched_[count] = place;
+    count += static_cast<size_t>(!visible_ || visible_->Has(place));
   }
+  touched_.resize(count);
+  std::fill(changes_.begin(), changes_.end(), kNone);
 }
 
 const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
@@ -139,7 +159,10 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
   touched_.clear();
   fresh_.clear();
   if (std::equal(broken.begin(), broken.end(), broken_.begin(), broken_.end())) return touched_;
-  if (!std::includes(broken.begin(), broken.end(), broken_.begin(), broken_.end())) {
+  std::vector<int32_t> fresh;
+  std::set_difference(broken.begin(), broken.end(), broken_.begin(), broken_.end(),
+                      std::back_inserter(fresh));
+  if (fresh.size() + broken_.size() != broken.size()) {  // some are whole again
     graph_.Heal();
     std::fill(reaches_.begin(), reaches_.end(), kOneEdge);
     for (const int32_t edge : broken) graph_.Break(edge);
@@ -154,9 +177,6 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     }
     TouchAll();
   } else {
-    std::vector<int32_t> fresh;
-    std::set_difference(broken.begin(), broken.end(), broken_.begin(), broken_.end(),
-                        std::back_inserter(fresh));
     std::vector<int32_t> ends;
     for (const int32_t edge : fresh) {
       graph_.Break(edge);
@@ -172,16 +192,22 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     for (const int32_t end : ends) lost_edges_[static_cast<size_t>(end)] = 0;
     bool splits = false;
     const auto split = [&] { splits = pieces_.Split(graph_, fresh); };
-    const auto show = [&] { fresh_ = visible_->Break(graph_, fresh); };
-    // At the same time: much of either is one step after the other.
-    ParallelFor(visible_ ? 2 : 1, 1, [&](int64_t begin, int64_t end) {
-      for (int64_t at = begin; at < end; ++at) at == 0 ? split() : show();
-    });
-    if (splits) TouchInSpace();
-    if (visible_) {
-      FindLeaders();
+    const auto show = [&] {
+      fresh_ = visible_->Break(graph_, fresh);
       ShowInCubes(order, fresh_);
       TouchRoundFresh(order);
+    };
+    if (visible_) {
+      RunBoth(split, show);
+      RunBoth(
+          [&] {
+            if (splits) TouchInSpace();
+            TouchInCubesOfFresh(order);
+          },
+          [&] { FindLeaders(); });
+    } else {
+      split();
+      if (splits) TouchInSpace();
     }
     TakeTouched();
   }

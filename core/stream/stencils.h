@@ -76,7 +76,7 @@ class Stencils {
   static constexpr Reach kTwoEdges = 1;
   static constexpr Reach kInSpace = 2;
 
-  // What must be done about a stencil.
+  // What must be done about a stencil: the greatest of what is found to be.
   using Change = uint8_t;
   static constexpr Change kNone = 0;
   static constexpr Change kSearch = 1;         // from its reach on
@@ -94,6 +94,7 @@ class Stencils {
   void FindLeaders();
   void ShowInCubes(const NodeOrder& order, std::span<const int32_t> places);
   void TouchRoundFresh(const NodeOrder& order);
+  void TouchInCubesOfFresh(const NodeOrder& order);
   void TouchRing(int32_t between);
 
   void TouchAll();
@@ -101,6 +102,7 @@ class Stencils {
   void TouchAround(int32_t near);
   void TouchInSpace();
   void TakeTouched();
+  static void ListMarked(std::span<const uint8_t> marks, std::vector<int32_t>& places);
 
   std::vector<Vec3> rest_;  // m, by place
   EdgeGraph graph_;

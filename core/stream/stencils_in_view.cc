@@ -44,9 +44,9 @@ void Stencils::ShowInCubes(const NodeOrder& order, std::span<const int32_t> plac
 }
 
 // A place that comes into view can be nearer to others than what they have. Those that may take it
-// are searched for anew: those over one edge or two, if that is how far their search went and it is
-// nearer, or if it went farther; and those that were found in space, in cubes that it touches. Also
-// those that found one place alone, since that may be what led their piece before.
+// are searched for anew: here those over one edge or two, if that is how far their search went and
+// it is nearer, or if it went farther. No piece is looked at. Also makes what
+// TouchInCubesOfFresh needs.
 void Stencils::TouchRoundFresh(const NodeOrder& order) {
   if (fresh_.empty()) return;
   const auto tables = static_cast<int64_t>(cubes_.size() * kCubeSizes);
@@ -64,6 +64,36 @@ void Stencils::TouchRoundFresh(const NodeOrder& order) {
       near.Widen();
     }
   });
+  for (const int32_t place : fresh_) {
+    marks_[static_cast<size_t>(place)] = kFresh;
+    Touch(place, kSearchAnew);
+  }
+  ParallelFor(static_cast<int64_t>(fresh_.size()), 256, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) {
+      for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at)])) {
+        if (place < 0) continue;
+        const std::atomic_ref<uint8_t> mark(marks_[static_cast<size_t>(place)]);
+        if ((mark.load(std::memory_order_relaxed) & kNextToFresh) == 0) {
+          mark.fetch_or(kNextToFresh, std::memory_order_relaxed);
+        }
+      }
+    }
+  });
+  std::vector<int32_t> marked;
+  ListMarked(marks_, marked);
+  ParallelFor(static_cast<int64_t>(marked.size()), 64, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) {
+      const int32_t place = marked[static_cast<size_t>(at)];
+      if ((marks_[static_cast<size_t>(place)] & kNextToFresh) != 0) TouchRing(place);
+    }
+  });
+  std::fill(marks_.begin(), marks_.end(), uint8_t{0});
+}
+
+// And those that were found in space, in cubes that fresh places touch, of pieces that have some;
+// also those that found one place alone, since that may be what led their piece before.
+void Stencils::TouchInCubesOfFresh(const NodeOrder& order) {
+  if (fresh_.empty()) return;
   std::vector<uint8_t> has_fresh(static_cast<size_t>(pieces_.count()), 0);
   for (const int32_t place : fresh_) has_fresh[static_cast<size_t>(pieces_[place])] = 1;
   const std::vector<int32_t>& places = visible_->places();
@@ -83,29 +113,6 @@ void Stencils::TouchRoundFresh(const NodeOrder& order) {
       }
     }
   });
-  for (const int32_t place : fresh_) {
-    marks_[static_cast<size_t>(place)] = kFresh;
-    Touch(place, kSearchAnew);
-  }
-  ParallelFor(static_cast<int64_t>(fresh_.size()), 256, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) {
-      for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at)])) {
-        if (place < 0) continue;
-        const std::atomic_ref<uint8_t> mark(marks_[static_cast<size_t>(place)]);
-        if ((mark.load(std::memory_order_relaxed) & kNextToFresh) == 0) {
-          mark.fetch_or(kNextToFresh, std::memory_order_relaxed);
-        }
-      }
-    }
-  });
-  std::vector<int32_t> next_to_fresh;
-  for (size_t place = 0; place < marks_.size(); ++place) {
-    if ((marks_[place] & kNextToFresh) != 0) next_to_fresh.push_back(static_cast<int32_t>(place));
-  }
-  ParallelFor(static_cast<int64_t>(next_to_fresh.size()), 64, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) TouchRing(next_to_fresh[static_cast<size_t>(at)]);
-  });
-  std::fill(marks_.begin(), marks_.end(), uint8_t{0});
 }
 
 // A place with fresh ones next to it, that is over an unbroken edge: of it and of all that is next

@@ -11,7 +11,7 @@ namespace cleave {
 namespace {
 
 constexpr uint8_t kSeen = 1;   // visible before
-constexpr uint8_t kFresh = 2;  // only since the Break in work
+constexpr uint8_t kFresh = 2;  // only since the Break in work; above kSeen
 
 // Of each set of a tet's edges, bit k for kTetEdges[k]: whether the others do not join its
 // vertices.
@@ -124,12 +124,20 @@ void VisiblePlaces::Heal() {
 void VisiblePlaces::List() {
   places_.clear();
   fresh_.clear();
-  for (size_t place = 0; place < is_visible_.size(); ++place) {
-    if (is_visible_[place] == 0) continue;
-    places_.push_back(static_cast<int32_t>(place));
-    if (is_visible_[place] == kSeen) continue;
-    fresh_.push_back(static_cast<int32_t>(place));
-    is_visible_[place] = kSeen;
+  std::array<int32_t, 256> visible, fresh;
+  for (size_t begin = 0; begin < is_visible_.size(); begin += visible.size()) {
+    const size_t end = std::min(is_visible_.size(), begin + visible.size());
+    size_t visible_count = 0;
+    size_t fresh_count = 0;
+    for (size_t place = begin; place < end; ++place) {  // without branches, as in Stencils
+      const uint8_t is_visible = is_visible_[place];
+      visible[visible_count] = fresh[fresh_count] = static_cast<int32_t>(place);
+      visible_count += static_cast<size_t>(is_visible != 0);
+      fresh_count += static_cast<size_t>(is_visible == kFresh);
+      is_visible_[place] = std::min(is_visible, kSeen);
+    }
+    places_.insert(places_.end(), visible.data(), visible.data() + visible_count);
+    fresh_.insert(fresh_.end(), fresh.data(), fresh.data() + fresh_count);
   }
 }
 

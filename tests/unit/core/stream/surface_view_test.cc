@@ -17,6 +17,7 @@
 #include "core/surface/point_motion.h"
 #include "core/surface/visible_surface.h"
 #include "gtest/gtest.h"
+#include "tbb/task_arena.h"
 #include "tests/unit/core/stream/stream_fixture.h"
 
 namespace cleave {
@@ -240,6 +241,25 @@ INSTANTIATE_TEST_SUITE_P(Coders, SurfaceViewTest,
                          });
 
 // All that is drawn follows from visible nodes: with others anywhere it is the same to the bit.
+TEST(SurfaceView, BytesAreTheSameForAnyNumberOfThreads) {
+  const Body body = LatticeBody(40, 16, 16);
+  std::vector<std::string> expected;
+  for (const int threads : {1, 2, 8}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      FrameEncoder encoder = MakeEncoder(OfSurface(body), body.mesh());
+      FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
+      std::vector<std::string> frames;
+      for (const int64_t number : {0, 9, 10, 25, 41}) {
+        frames.push_back(encoder.Encode(TumblingFrame(body, number))->bytes);
+        ASSERT_TRUE(decoder.Apply(frames.back()).ok());
+      }
+      if (expected.empty()) expected = frames;
+      EXPECT_EQ(frames, expected) << threads;
+    });
+  }
+}
+
 TEST(SurfaceView, TheSurfaceThatIsDrawnIsThatOfAllNodes) {
   const Body body = LatticeBody(12, 6, 6);
   TetMesh mesh;
