@@ -19,8 +19,8 @@ constexpr int kSlices = 8;
 constexpr double kDepth = 0.6 * kThickness;  // m, of the cuts, and of the dough under the cheese
 constexpr double kCheese = kDepth;           // m, its lower side
 constexpr double kCrust = 0.88 * kRadius;    // m, where the cheese ends
-constexpr double kPull = 0.12;               // m
-constexpr double kSeconds = 1;
+constexpr double kLiftSeconds = 0.5;
+constexpr double kFramesPerSecond = 50;
 constexpr int32_t kCheeseRegion = 1;
 
 // The bearing of the slice that is pulled, number 0.
@@ -69,10 +69,10 @@ absl::StatusOr<Demonstration> MakePizza(const Setting& setting) {
   disc.thickness = kThickness;
   disc.resolution = {setting.layout, cell_size, 0.2, setting.seed};
   CLEAVE_ASSIGN_OR_RETURN(TetMesh mesh, BuildMesh(disc));
-  return MakePizzaOf(std::move(mesh), cell_size, std::nullopt, setting);
+  return MakePizzaOf(std::move(mesh), cell_size, {}, setting);
 }
 
-Demonstration MakePizzaOf(TetMesh mesh, double cell_size, std::optional<double> crust_depth,
+Demonstration MakePizzaOf(TetMesh mesh, double cell_size, const PizzaRecipe& recipe,
                           const Setting& setting) {
   Demonstration made;
   made.mesh = std::move(mesh);
@@ -98,7 +98,8 @@ Demonstration MakePizzaOf(TetMesh mesh, double cell_size, std::optional<double> 
   cheese.poisson_ratio = 0.4;
   cheese.density = 1000;
   cheese.tensile_strength = 3e4;
-  cheese.plasticity = Plasticity{.yield_stress = 1e3, .hardening = 1e3, .failure_strain = 1.5};
+  cheese.plasticity = Plasticity{
+      .yield_stress = 1e3, .hardening = 1e3, .failure_strain = recipe.cheese_failure_strain};
   scene.materials.push_back(cheese);
   if (setting.variant != "uncut") {
     ImpurityLayer layer;
@@ -107,9 +108,9 @@ Demonstration MakePizzaOf(TetMesh mesh, double cell_size, std::optional<double> 
     layer.weakening = 0.3;
     Impurities impurities;
     impurities.layers.push_back(layer);
-    if (crust_depth) {
+    if (recipe.crust_depth) {
       layer.name = "cuts of the crust";
-      layer.source = Cuts(1.1 * kRadius, kCrust, *crust_depth);
+      layer.source = Cuts(1.1 * kRadius, kCrust, *recipe.crust_depth);
       impurities.layers.push_back(layer);
     }
     scene.impurities = impurities;
@@ -129,15 +130,15 @@ Demonstration MakePizzaOf(TetMesh mesh, double cell_size, std::optional<double> 
   const double c = std::cos(kSliceAngle), s = std::sin(kSliceAngle);
   made.pull_direction = {c, s, 0};
   Keyframe lifted;
-  lifted.time = 0.5 * kSeconds;
+  lifted.time = kLiftSeconds;
   lifted.rotation = 0.7;
   lifted.translation = {0.005 * c, 0.005 * s, 0};  // m
   Keyframe out = lifted;
-  out.time = kSeconds;
-  out.translation = {kPull * c, kPull * s, 0};
+  out.time = recipe.seconds;
+  out.translation = {recipe.pull * c, recipe.pull * s, 0};
   made.pull_motion = AddMotion(scene, "slice", {true, true, true}, {Keyframe{}, lifted, out});
   scene.motions.back().rotation_axis = {s, -c, 0};
-  SetPace(scene, kSeconds, 50);
+  SetPace(scene, recipe.seconds, std::lround(kFramesPerSecond * recipe.seconds));
   return made;
 }
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -24,9 +24,12 @@ constexpr double kScale = 0.15 / 0.55;  // m a unit of the file
 constexpr double kCell = 0.0085;        // m
 // The scan is the upper side alone, and in the middle 5 mm high: this is laid under it, so that the
 // pizza is as thick there as the scene's own and one that it is filled with.
-constexpr double kDough = 0.009;       // m
-constexpr double kCrustDepth = 0.016;  // m, of cuts: 60 % of the crust's height
-constexpr std::array<uint32_t, 3> kSeeds = {2, 3, 4};
+constexpr double kDough = 0.009;  // m
+// Cuts go through 60 % of the crust's height. Its cheese is another choice of material than the
+// scene's own, that of a pizza eaten hot: it draws out to twice the plastic strain, and so the
+// slice is pulled further, as fast, until the last string has torn.
+const PizzaRecipe kRecipe{
+    .crust_depth = 0.016, .cheese_failure_strain = 3, .pull = 0.168, .seconds = 1.2};
 
 // About the z axis on z = 0, with the y axis of the scan upright, on a flat layer of dough.
 void LayFlat(SurfaceMesh& surface) {
@@ -75,32 +78,52 @@ double SliceShare(const TetMesh& mesh) {
   return slice / all;
 }
 
-void ExpectASliceToLeaveAlongItsCuts(MeshLayout layout) {
+// Bodies and what was measured of them; a body that fails to run is a failure of the test.
+std::vector<Trial> TriedPizzas(MeshLayout layout, const std::vector<std::string>& variants) {
   auto surface = ReadSurfaceFile(CLEAVE_MESHES_DIR "/surface/pizza.obj");
-  ASSERT_TRUE(surface.ok()) << surface.status();
+  EXPECT_TRUE(surface.ok()) << surface.status();
+  if (!surface.ok()) return {};
   LayFlat(*surface);
-  const std::vector<std::string> variants = {"cut", "uncut", "shuffled"};
   std::vector<Trial> trials;
-  for (const uint32_t seed : kSeeds) {
-    const auto body =
-        MeshSurface(surface->vertices, surface->triangles, {layout, kCell, 0.2, seed});
-    ASSERT_TRUE(body.ok()) << body.status();
+  for (const uint32_t seed : kReportedSeeds) {
     Setting setting{.seed = seed, .layout = layout};
     Trial& trial = trials.emplace_back(Trial{setting, {}});
+    const auto body =
+        MeshSurface(surface->vertices, surface->triangles, {layout, kCell, 0.2, seed});
+    EXPECT_TRUE(body.ok()) << body.status();
+    if (!body.ok()) continue;
     for (const std::string& variant : variants) {
       setting.variant = variant;
-      auto outcome = Measured(MakePizzaOf(body->mesh, kCell, kCrustDepth, setting), MeasurePizza);
-      ASSERT_TRUE(outcome.ok()) << variant << ": " << outcome.status();
+      Demonstration made = MakePizzaOf(body->mesh, kCell, kRecipe, setting);
+      // Cheese that is drawn out so far takes more of them than the scene's own.
+      made.scene.quality.newton_iterations = 40;
+      auto outcome = Measured(std::move(made), MeasurePizza);
+      EXPECT_TRUE(outcome.ok()) << variant << ": " << outcome.status();
+      if (!outcome.ok()) continue;
       // Of a round pizza it would be an eighth.
       outcome->metrics["slice_share"] *= 0.125 / SliceShare(body->mesh);
       trial.variants[variant] = outcome->metrics;
       Report("pizza " + variant + " of pizza.obj", setting, outcome->metrics);
     }
-    EXPECT_LT(trial.Get("shuffled", "along_cuts"), 0.85) << "a control";
   }
-  // Not met yet: of the ten strings that are asked for it has 20 on seed 1, but 11, 19 and 2 in
-  // unstructured bodies of the others, and 11 and 9 in lattices.
-  for (const Criterion& criterion : PizzaCriteria()) ExpectHolds(criterion, trials);
+  return trials;
+}
+
+void ExpectASliceToLeaveAlongItsCuts(MeshLayout layout) {
+  const std::vector<Criterion> criteria = PizzaCriteria();
+  const std::vector<Trial> trials = TriedPizzas(layout, VariantsOf(criteria));
+  for (const Criterion& criterion : criteria) ExpectHolds(criterion, trials);
+}
+
+// A control: as much weakening, at other places.
+void ExpectNoSliceToLeaveAlongCutsThatAreNotThere(MeshLayout layout) {
+  const Criterion control{.text = "Shuffled cuts lead a slice out, too",
+                          .variants = {"shuffled"},
+                          .conditions = {{"share of broken edges within 1.5 cells of a cut",
+                                          Of("shuffled", "along_cuts"), Relation::kAtLeast, 0.85}},
+                          .control = true,
+                          .share = kAll};
+  ExpectHolds(control, TriedPizzas(layout, control.variants));
 }
 
 TEST(FullRealPizza, ASliceLeavesAlongItsCutsInALattice) {
@@ -109,6 +132,14 @@ TEST(FullRealPizza, ASliceLeavesAlongItsCutsInALattice) {
 
 TEST(FullRealPizza, ASliceLeavesAlongItsCutsInAnUnstructuredMesh) {
   ExpectASliceToLeaveAlongItsCuts(MeshLayout::kUnstructured);
+}
+
+TEST(FullRealPizza, ShuffledCutsLeadNoSliceOutOfALattice) {
+  ExpectNoSliceToLeaveAlongCutsThatAreNotThere(MeshLayout::kJitteredLattice);
+}
+
+TEST(FullRealPizza, ShuffledCutsLeadNoSliceOutOfAnUnstructuredMesh) {
+  ExpectNoSliceToLeaveAlongCutsThatAreNotThere(MeshLayout::kUnstructured);
 }
 
 }  // namespace
