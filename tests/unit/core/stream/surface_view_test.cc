@@ -1,77 +1,22 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "core/mesh/incidence.h"
-#include "core/mesh/tet_geometry.h"
-#include "core/mesh/tet_mesh.h"
 #include "core/stream/frame_decoder.h"
 #include "core/stream/frame_encoder.h"
-#include "core/surface/faces.h"
-#include "core/surface/point_motion.h"
-#include "core/surface/visible_surface.h"
 #include "gtest/gtest.h"
 #include "tbb/task_arena.h"
 #include "tests/unit/core/stream/stream_fixture.h"
+#include "tests/unit/core/stream/surface_view_scene.h"
 
 namespace cleave {
 namespace {
 
 using namespace stream_test;
-
-constexpr double kTolerance = 1e-4;  // m
-
-StreamParameters OfSurface(const Body& body, uint16_t coder = kCoderContextRans) {
-  StreamParameters parameters = Parameters(body.edges.size(), kTolerance, 8);
-  parameters.tet_count = body.tets.size();
-  parameters.predictor_id = kPredictorInterpolation;
-  parameters.coder_id = coder;
-  parameters.view_id = kViewSurface;
-  return parameters;
-}
-
-// A wavy crack runs along x through the body, and cells of different size come off behind it, some
-// of them a single node; everything tumbles and shakes.
-bool IsBroken(const Body& body, size_t edge, int64_t number) {
-  const auto cell = [&](int32_t node) {
-    const Vec3& x = body.rest[static_cast<size_t>(node)];
-    const double front = 0.08 * static_cast<double>(number - 2);
-    if (x[0] + 0.1 * Random(3, static_cast<uint64_t>(node), 0) > front) return -1;
-    if (Random(4, static_cast<uint64_t>(node), 0) > 0.9) return 1000 + node;
-    return x[1] + 0.03 * Random(5, static_cast<uint64_t>(node), 1) > 0.25 ? 1 : 0;
-  };
-  const auto& [a, b] = body.edges[edge];
-  const int one = cell(a);
-  const int other = cell(b);
-  return one != other && one >= 0 && other >= 0;
-}
-
-Frame TumblingFrame(const Body& body, int64_t number) {
-  Frame frame;
-  frame.frame = number;
-  frame.positions = body.rest;
-  const auto t = static_cast<double>(number);
-  for (size_t node = 0; node < body.rest.size(); ++node) {
-    const Vec3& x = body.rest[node];
-    const double angle = 0.05 * t;
-    frame.positions[node] = {std::cos(angle) * x[0] - std::sin(angle) * x[1] + 0.1 * t,
-                             std::sin(angle) * x[0] + std::cos(angle) * x[1],
-                             x[2] * (1 + 0.1 * std::sin(t + 3 * x[0]))};
-    for (size_t axis = 0; axis < 3; ++axis) {
-      frame.positions[node][axis] += 1e-3 * Random(static_cast<uint64_t>(number), node, axis);
-    }
-  }
-  for (size_t edge = 0; edge < body.edges.size(); ++edge) {
-    if (IsBroken(body, edge, number)) frame.broken_edges.push_back(static_cast<int32_t>(edge));
-  }
-  return frame;
-}
 
 // By definition, from scratch.
 std::vector<uint8_t> VisibleNodes(const Body& body, const std::vector<int32_t>& broken) {
@@ -240,7 +185,6 @@ INSTANTIATE_TEST_SUITE_P(Coders, SurfaceViewTest,
                            return "Coder" + std::to_string(coder.param);
                          });
 
-// All that is drawn follows from visible nodes: with others anywhere it is the same to the bit.
 TEST(SurfaceView, BytesAreTheSameForAnyNumberOfThreads) {
   const Body body = LatticeBody(40, 16, 16);
   std::vector<std::string> expected;
@@ -258,53 +202,6 @@ TEST(SurfaceView, BytesAreTheSameForAnyNumberOfThreads) {
       EXPECT_EQ(frames, expected) << threads;
     });
   }
-}
-
-TEST(SurfaceView, TheSurfaceThatIsDrawnIsThatOfAllNodes) {
-  const Body body = LatticeBody(12, 6, 6);
-  TetMesh mesh;
-  mesh.rest_positions = body.rest;
-  mesh.tets = body.tets;
-  for (size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    const TetCorners corners = CornersOf(mesh, static_cast<int64_t>(tet));
-    if (SignedVolume(corners) < 0) std::swap(mesh.tets[tet][2], mesh.tets[tet][3]);
-  }
-  const Incidence incidence = BuildIncidence(mesh);
-  ASSERT_EQ(incidence.edges, body.edges);
-  const Faces faces = BuildFaces(mesh);
-  VisibleSurface surface(mesh, incidence, faces, {});
-  PointMotion of_all(mesh, incidence);
-  PointMotion of_visible(mesh, incidence);
-  FrameEncoder encoder = MakeEncoder(OfSurface(body), body.mesh());
-  FrameDecoder decoder = MakeDecoder(encoder.header_bytes(), body.mesh());
-  std::vector<int32_t> broken;
-  size_t off_nodes = 0;
-  size_t hidden = 0;
-  for (int64_t number = 0; number < 20; ++number) {
-    const Frame frame = TumblingFrame(body, number);
-    ASSERT_TRUE(decoder.Apply(encoder.Encode(frame)->bytes).ok());
-    std::vector<int32_t> fresh;
-    std::set_difference(frame.broken_edges.begin(), frame.broken_edges.end(), broken.begin(),
-                        broken.end(), std::back_inserter(fresh));
-    broken = frame.broken_edges;
-    surface.Break(fresh);
-    const Frame& seen = decoder.frame();
-    std::vector<Vec3> all = seen.positions;
-    for (size_t node = 0; node < all.size(); ++node) {
-      if (seen.visible[node] == 0) all[node] = frame.positions[node];
-      hidden += seen.visible[node] == 0 ? 1 : 0;
-    }
-    std::vector<Vec3> points;
-    std::vector<Vec3> expected;
-    of_visible.Move(surface.topology(), seen.positions, points);
-    of_all.Move(surface.topology(), all, expected);
-    ASSERT_EQ(points, expected) << number;
-    for (const SurfacePoint& point : surface.topology().points) {
-      off_nodes += point.owned_by_all() ? 0 : 1;
-    }
-  }
-  EXPECT_GT(off_nodes, 1000u);
-  EXPECT_GT(hidden, 500u);
 }
 
 TEST(SurfaceView, WhatCannotBeIsRefused) {
