@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/large_vector.h"
 #include "core/stream/node_order.h"
 
 namespace cleave {
@@ -103,6 +104,9 @@ class CubeIndex {
     places_[static_cast<size_t>(slot.begins[cube & 7] + slot.counts[cube & 7]++)] = place;
   }
 
+  // Fetches what Add will need.
+  void PrefetchOf(uint64_t code) const { Prefetch(code >> (3 * bits_) >> 3); }
+
   bool empty() const { return places_.empty(); }  // of room
   int bits() const { return bits_; }
   // Fetches what ForCubes will read.
@@ -135,7 +139,7 @@ class CubeIndex {
   }
 
   int bits_ = 0;
-  std::vector<Slot> slots_;      // a power of two, at most half of them taken
+  LargeVector<Slot> slots_;      // a power of two, at most half of them taken
   std::vector<int32_t> places_;  // those of a cube one after the other
   int shift_ = 63;
 };

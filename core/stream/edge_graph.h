@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/large_vector.h"
 #include "core/stream/node_order.h"
 
 namespace cleave {
@@ -27,6 +28,12 @@ class EdgeGraph {
   void Prefetch(int32_t place) const {
     __builtin_prefetch(slots_.data() + offsets_[static_cast<size_t>(place)]);
   }
+  // Fetches what Ends and Break need.
+  void PrefetchEdge(int32_t edge) const {
+    for (const int32_t slot : edge_slots_[static_cast<size_t>(edge)]) {
+      __builtin_prefetch(slots_.data() + slot);
+    }
+  }
   // The two ends of an edge, as places.
   std::array<int32_t, 2> Ends(int32_t edge) const;
 
@@ -37,8 +44,8 @@ class EdgeGraph {
 
  private:
   std::vector<int32_t> offsets_;
-  std::vector<int32_t> slots_;
-  std::vector<std::array<int32_t, 2>> edge_slots_;  // where each edge stands in slots_
+  LargeVector<int32_t> slots_;
+  LargeVector<std::array<int32_t, 2>> edge_slots_;  // where each edge stands in slots_
 };
 
 }  // namespace cleave

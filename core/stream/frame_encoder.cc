@@ -242,7 +242,9 @@ absl::StatusOr<EncodedFrame> FrameEncoder::Encode(const Frame& frame) {
     AppendTopology(SectionType::kTopologyDelta, newly_broken, header, body);
   };
   const auto set_broken = [&] {
-    if (interpolation_.has_value()) interpolation_->SetBroken(key, frame.broken_edges, state_);
+    if (interpolation_.has_value()) {
+      interpolation_->SetBroken(key, frame.broken_edges, frame.positions, state_);
+    }
   };
   const bool lists = breaks && !key;
   // What holds depends on the pieces, or on what is in view.

@@ -40,7 +40,7 @@ class InterpolationDecoder {
   StreamHeader header_;
   InterpolationPredictor predictor_;
   std::vector<int32_t> shown_;      // places that the last Decode gave a place in its state
-  std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
+  LargeVector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
 };
 
 }  // namespace cleave

@@ -20,6 +20,31 @@ namespace {
 constexpr int64_t kGrainNodes = 4096;
 constexpr size_t kMaxSamples = 96;  // places a group that a continuation is fitted to
 
+// Positions of nodes in grid units, not rounded.
+class ToGrid {
+ public:
+  ToGrid(std::span<const Vec3> positions, const Vec3& origin, double inverse_unit)
+      : positions_(positions),
+        corner_{origin[0], origin[1], origin[2], 0},
+        scale_{inverse_unit, inverse_unit, inverse_unit, 0} {}
+
+  Double4 operator()(size_t node) const {
+    const Vec3& x = positions_[node];
+    Double4 position;  // the fourth lane is of the next node, and scaled to zero
+    if (node + 1 == positions_.size()) {
+      position = Double4{x[0], x[1], x[2], 0};
+    } else {
+      std::memcpy(&position, &x, sizeof(position));
+    }
+    return (position - corner_) * scale_;
+  }
+
+ private:
+  std::span<const Vec3> positions_;
+  Double4 corner_;
+  Double4 scale_;
+};
+
 }  // namespace
 
 InterpolationEncoder::InterpolationEncoder(const StreamHeader& header, const StreamMesh& mesh)
@@ -95,25 +120,16 @@ absl::Status InterpolationEncoder::SetTargets(const std::vector<Vec3>& positions
   const double inverse_unit = 1.0 / header_.UnitOf(tolerance);
   const double largest = LargestTarget();
   const Vec3 origin = header_.origin;
+  const ToGrid to_grid(positions, origin, inverse_unit);
   const std::vector<int32_t>& nodes = predictor_.order().nodes;
+  const bool is_surface = header_.is_surface();
   std::atomic<bool> all_fit{true};
-  const Double4 corner = {origin[0], origin[1], origin[2], 0};
-  const Double4 scale = {inverse_unit, inverse_unit, inverse_unit, 0};
-  const auto last_node = static_cast<int32_t>(positions.size()) - 1;
   ParallelFor(static_cast<int64_t>(nodes.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
     Int64x4 fits = ~Int64x4{};
-    for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
-      const int32_t node = nodes[place];
-      const Vec3& x = positions[static_cast<size_t>(node)];
-      Double4 position;  // the fourth lane is of the next node, and scaled to zero
-      if (node == last_node) {
-        position = Double4{x[0], x[1], x[2], 0};
-      } else {
-        std::memcpy(&position, &x, sizeof(position));
-      }
-      const Double4 target = (position - corner) * scale;
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      const Double4 target = to_grid(is_surface ? at : static_cast<size_t>(nodes[at]));
       fits &= (target <= largest) & (target >= -largest);
-      targets_[place] = target;
+      if (!is_surface) targets_[at] = target;
     }
     const bool fit = !Any(~fits);
     if (!fit) all_fit.store(false, std::memory_order_relaxed);
@@ -186,7 +202,7 @@ Continuation InterpolationEncoder::Choose(int64_t group) {
 }
 
 void InterpolationEncoder::SetBroken(bool key, std::span<const int32_t> broken,
-                                     StreamState& state) {
+                                     std::span<const Vec3> positions, StreamState& state) {
   if (header_.is_surface() && history_is_new_ && state.frame >= 0) {
     // What comes into view now does so after what the state has in view.
     predictor_.Return(state.tolerance, state.broken_edges, state.positions, state.previous);
@@ -195,13 +211,16 @@ void InterpolationEncoder::SetBroken(bool key, std::span<const int32_t> broken,
   predictor_.Prepare(key, tolerance_, broken, state.positions, state.previous, history_is_new_);
   history_is_new_ = false;
   if (!header_.is_surface()) return;
-  // Hidden places are at 0 in every state, and so they stay there.
-  const VisiblePlaces& visible = *predictor_.stencils().visible();
-  ParallelFor(static_cast<int64_t>(targets_.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
-    for (int64_t place = begin; place < end; ++place) {
-      if (!visible.Has(static_cast<int32_t>(place))) {
-        targets_[static_cast<size_t>(place)] = Double4{};
-      }
+  // Hidden places are at 0 in every state, and so they stay there. Only from a key frame on may
+  // some be hidden that were not.
+  if (key) std::fill(targets_.begin(), targets_.end(), Double4{});
+  const std::vector<int32_t>& places = predictor_.places();
+  const std::vector<int32_t>& nodes = predictor_.order().nodes;
+  const ToGrid to_grid(positions, header_.origin, 1.0 / header_.UnitOf(tolerance_));
+  ParallelFor(static_cast<int64_t>(places.size()), kGrainNodes, [&](int64_t begin, int64_t end) {
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      const auto place = static_cast<size_t>(places[at]);
+      targets_[place] = to_grid(static_cast<size_t>(nodes[place]));
     }
   });
 }

@@ -44,9 +44,11 @@ class InterpolationEncoder {
   void SetRegion(const Region& region, int32_t shift);
   void ClearRegion() { region_.reset(); }
 
-  // Brings stencils and pieces to the broken edges of the frame whose targets are set and that
-  // follows `state`. Where that is no key frame, places that come into view get a place in `state`.
-  void SetBroken(bool key, std::span<const int32_t> broken, StreamState& state);
+  // Brings stencils and pieces to the broken edges of the frame whose targets are set from these
+  // positions and that follows `state`. Where that is no key frame, places that come into view get
+  // a place in `state`.
+  void SetBroken(bool key, std::span<const int32_t> broken, std::span<const Vec3> positions,
+                 StreamState& state);
 
   // True if every node may stay where `state` has it, and as coarse. Precondition: no edge has
   // broken since; in a surface view or a stream with regions, SetBroken was called for the frame.
@@ -91,8 +93,8 @@ class InterpolationEncoder {
   std::optional<PlacedRegion> region_;
   bool history_is_new_ = true;
   double tolerance_ = 0;            // m, of the targets
-  std::vector<Double4> targets_;    // grid units, by place: x, y, z, 0
-  std::vector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
+  LargeVector<Double4> targets_;    // grid units, by place: x, y, z, 0
+  LargeVector<Int32x4> residuals_;  // steps, by place: x, y, z, 0
   std::vector<DetailSample> samples_;
   std::vector<Chunk> chunks_;
   FrameMotion motion_;

@@ -30,7 +30,7 @@ InterpolationPredictor::InterpolationPredictor(const StreamHeader& header, const
                     : Stencils(order_, ByPlace(order_, mesh.rest_positions), mesh.edges)),
       origin_(header.origin),
       domain_bound_(header.domain_bound) {
-  for (std::vector<Int32x4>* lanes : {&positions_, &next_, &last_, &before_, &at_rest_}) {
+  for (LargeVector<Int32x4>* lanes : {&positions_, &next_, &last_, &before_, &at_rest_}) {
     lanes->resize(mesh.rest_positions.size());
   }
   if (header.is_surface()) return;
@@ -63,7 +63,7 @@ void InterpolationPredictor::MakeHistory(std::span<int32_t> positions) const {
         const int32_t place = begin[at];
         if (stencils_[place].leads()) continue;
         const Int32x4 blend = ToInts(BlendIn(place, positions));
-        const Int32x4 detail = DetailIn(place, rest_);
+        const Int32x4& detail = RestDetail(place);
         for (int axis = 0; axis < 3; ++axis) {
           positions[3 * static_cast<size_t>(place) + static_cast<size_t>(axis)] =
               Within(int64_t{blend[axis]} + detail[axis]);
@@ -101,20 +101,23 @@ Int32x4 InterpolationPredictor::DetailIn(int32_t place, std::span<const int32_t>
   return Int32x4{position[0] - whole[0], position[1] - whole[1], position[2] - whole[2], 0};
 }
 
-void InterpolationPredictor::MakeDetails(int32_t place, std::span<const int32_t> last,
-                                         std::span<const int32_t> before) {
-  at_rest_[static_cast<size_t>(place)] = DetailIn(place, rest_);
-  if (last.empty()) return;
-  last_[static_cast<size_t>(place)] = DetailIn(place, last);
-  before_[static_cast<size_t>(place)] = DetailIn(place, before);
+void InterpolationPredictor::MakeRestDetails(const std::vector<int32_t>& places) {
+  ParallelFor(static_cast<int64_t>(places.size()), 1024, [&](int64_t begin, int64_t end) {
+    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
+      at_rest_[static_cast<size_t>(places[at])] = DetailIn(places[at], rest_);
+    }
+  });
 }
 
 void InterpolationPredictor::MakeDetails(const std::vector<int32_t>& places,
                                          std::span<const int32_t> last,
                                          std::span<const int32_t> before) {
+  if (last.empty()) return;
   ParallelFor(static_cast<int64_t>(places.size()), 1024, [&](int64_t begin, int64_t end) {
     for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      MakeDetails(places[at], last, before);
+      const int32_t place = places[at];
+      last_[static_cast<size_t>(place)] = DetailIn(place, last);
+      before_[static_cast<size_t>(place)] = DetailIn(place, before);
     }
   });
 }
@@ -133,10 +136,12 @@ void InterpolationPredictor::Prepare(bool key, double tolerance, std::span<const
                                      bool history_is_new) {
   const std::vector<int32_t>& touched = stencils_.SetBroken(order_, broken);
   const bool grid_is_new = SetGrid(tolerance);
+  const std::vector<int32_t>& changed = history_is_new || grid_is_new ? places() : touched;
+  MakeRestDetails(changed);
   if (!key) {
     RunBoth([&] { MakeHistory(last); }, [&] { MakeHistory(before); });
   }
-  MakeDetails(history_is_new || grid_is_new ? places() : touched, last, before);
+  MakeDetails(changed, last, before);
 }
 
 void InterpolationPredictor::Return(double tolerance, std::span<const int32_t> broken,
@@ -144,6 +149,7 @@ void InterpolationPredictor::Return(double tolerance, std::span<const int32_t> b
                                     std::span<const int32_t> before) {
   stencils_.SetBroken(order_, broken);
   SetGrid(tolerance);
+  MakeRestDetails(places());
   MakeDetails(places(), last, before);
 }
 

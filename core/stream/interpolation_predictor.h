@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/int4.h"
+#include "core/base/large_vector.h"
 #include "core/base/parallel.h"
 #include "core/stream/node_order.h"
 #include "core/stream/stencils.h"
@@ -107,11 +108,11 @@ class InterpolationPredictor {
   Double4 BlendIn(int32_t place, std::span<const int32_t> positions) const;
   Int32x4 DetailIn(int32_t place, std::span<const int32_t> positions) const;
   bool SetGrid(double tolerance);
+  void MakeRestDetails(const std::vector<int32_t>& places);
   void MakeDetails(const std::vector<int32_t>& places, std::span<const int32_t> last,
                    std::span<const int32_t> before);
   void MakeHistory(std::span<int32_t> positions) const;
   void MakeHistoryOfLeader(int32_t place, std::span<int32_t> positions) const;
-  void MakeDetails(int32_t place, std::span<const int32_t> last, std::span<const int32_t> before);
 
   NodeOrder order_;
   Stencils stencils_;
@@ -120,11 +121,11 @@ class InterpolationPredictor {
   double domain_bound_;
   double tolerance_ = 0;            // m, of rest_
   std::vector<int32_t> rest_;       // on the grid, by place
-  std::vector<Int32x4> positions_;  // of the frame in work
-  std::vector<Int32x4> next_;       // details of the frame in work
-  std::vector<Int32x4> last_;       // details of the last frame
-  std::vector<Int32x4> before_;     // details of the one before
-  std::vector<Int32x4> at_rest_;    // details at rest
+  LargeVector<Int32x4> positions_;  // of the frame in work
+  LargeVector<Int32x4> next_;       // details of the frame in work
+  LargeVector<Int32x4> last_;       // details of the last frame
+  LargeVector<Int32x4> before_;     // details of the one before
+  LargeVector<Int32x4> at_rest_;    // details at rest
 };
 
 template <typename Choose, typename Holds, typename Correct>

@@ -79,8 +79,8 @@ bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
         part(rank_b, rank_a);
         lose(block_a, kInside);
       } else {
-        if (HasLink(block_a, rank_a, rank_b)) lose(block_a, kLink);
-        if (HasLink(block_b, rank_b, rank_a)) lose(block_b, kLink);
+        if (HasLink(block_a, a, b)) lose(block_a, kLink);
+        if (HasLink(block_b, b, a)) lose(block_b, kLink);
       }
     }
   });
@@ -108,9 +108,10 @@ bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
 }
 
 bool Pieces::HasLink(size_t block, int32_t from, int32_t to) const {
-  const std::vector<Link>& links = blocks_[block].links;  // ascending by `from`
-  auto link = std::lower_bound(links.begin(), links.end(), from,
-                               [](const Link& a, int32_t rank) { return a.from < rank; });
+  const std::vector<Link>& links = blocks_[block].links;
+  auto link = std::lower_bound(
+      links.begin(), links.end(), ranks_[static_cast<size_t>(from)],
+      [&](const Link& a, int32_t rank) { return ranks_[static_cast<size_t>(a.from)] < rank; });
   for (; link != links.end() && link->from == from; ++link) {
     if (link->to == to) return true;
   }
@@ -149,7 +150,7 @@ bool Pieces::FindClumps(int32_t block) {
       const auto rank = static_cast<size_t>(begin + at);
       left &= ~(uint64_t{1} << at);
       open = (open | joins_[rank]) & left;
-      clumps_[rank] = clump;
+      clumps_[static_cast<size_t>(places_[rank])] = clump;
       first = std::min(first, places_[rank]);
     }
     firsts_[static_cast<size_t>(clump)] = first;
@@ -165,25 +166,26 @@ void Pieces::FindLinks(const EdgeGraph& graph, int32_t block) {
   // Most edges join clumps that one just joined; a few that slip through are harmless.
   std::array<Link, 64> recent;
   recent.fill({-1, -1});
-  std::array<int32_t, 256> outside;  // ranks that edges of one place lead to
+  std::array<std::pair<int32_t, int32_t>, 256> outside;  // clump and place that an edge leads to
   for (int32_t rank = begin; rank < end; ++rank) {
-    const int32_t from = clumps_[static_cast<size_t>(rank)];
-    std::span<const int32_t> others = graph.Neighbours(places_[static_cast<size_t>(rank)]);
+    const int32_t place = places_[static_cast<size_t>(rank)];
+    const int32_t from = clumps_[static_cast<size_t>(place)];
+    std::span<const int32_t> others = graph.Neighbours(place);
     while (!others.empty()) {
       size_t count = 0;
       const std::span<const int32_t> some = others.first(std::min(others.size(), outside.size()));
       for (const int32_t other : some) {
-        const int32_t other_rank = ranks_[static_cast<size_t>(std::max(other, ~other))];
-        outside[count] = other_rank;
-        count += static_cast<size_t>((other_rank < begin || other_rank >= end) && other >= 0);
+        // A clump is all in one block. Without branches, which nobody could predict.
+        const int32_t to = clumps_[static_cast<size_t>(std::max(other, ~other))];
+        outside[count] = {to, other};
+        count += static_cast<size_t>(((to < begin) | (to >= end)) & (other >= 0));
       }
       others = others.subspan(some.size());
-      for (size_t at = 0; at < count; ++at) {
-        const int32_t to = clumps_[static_cast<size_t>(outside[at])];
+      for (const auto& [to, other] : std::span(outside).first(count)) {
         Link& same = recent[static_cast<size_t>(to / kBlock + to) % recent.size()];
         if (same.from == from && same.to == to) continue;
         same = {from, to};
-        links.push_back({rank, outside[at]});
+        links.push_back({place, other});
       }
     }
   }
@@ -261,7 +263,7 @@ bool Pieces::Join() {
   }
   ParallelFor(static_cast<int64_t>(labels_.size()), 8192, [&](int64_t begin, int64_t end) {
     for (auto place = static_cast<size_t>(begin); place < static_cast<size_t>(end); ++place) {
-      labels_[place] = numbers_[static_cast<size_t>(clumps_[static_cast<size_t>(ranks_[place])])];
+      labels_[place] = numbers_[static_cast<size_t>(clumps_[place])];
     }
   });
   return true;

@@ -33,14 +33,14 @@ class Pieces {
   bool IsNew(int32_t piece) const { return is_new_[static_cast<size_t>(piece)] != 0; }
 
  private:
-  // An unbroken edge to another block, by ranks.
+  // An unbroken edge to another block, by places.
   struct Link {
     int32_t from;
     int32_t to;
   };
   struct Block {
     std::vector<int32_t> clumps;  // the first rank of each
-    std::vector<Link> links;      // one at least between clumps that edges join
+    std::vector<Link> links;      // one at least between clumps that edges join; by rank of `from`
   };
 
   void FindJoins(const EdgeGraph& graph, int32_t block);
@@ -54,7 +54,7 @@ class Pieces {
   std::vector<int32_t> places_;  // by rank
   std::vector<int32_t> ranks_;   // by place
   std::vector<uint64_t> joins_;  // by rank: a bit for each place of its block that an edge joins
-  std::vector<int32_t> clumps_;  // by rank: the first rank of its clump
+  std::vector<int32_t> clumps_;  // by place: the first rank of its clump
   std::vector<int32_t> firsts_;  // by the first rank of a clump: its first place
   std::vector<Block> blocks_;
   std::vector<int32_t> joined_;   // by the first rank of a clump: an earlier one, or itself

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "core/base/parallel.h"
 #include "core/stream/stencils.h"
@@ -17,7 +18,7 @@ constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther o
 // Places on their way to a Nearest: what is to be read of them is fetched meanwhile.
 class Candidates {
  public:
-  Candidates(const std::vector<Vec3>& rest, Nearest& nearest) : rest_(rest), nearest_(nearest) {}
+  Candidates(std::span<const Vec3> rest, Nearest& nearest) : rest_(rest), nearest_(nearest) {}
 
   // Offers `place` sooner or later, if `wanted`.
   void Add(int32_t place, bool wanted) {
@@ -38,7 +39,7 @@ class Candidates {
   bool HasRoom() const { return count_ + 1 < places_.size(); }
 
  private:
-  const std::vector<Vec3>& rest_;
+  std::span<const Vec3> rest_;
   Nearest& nearest_;
   size_t count_ = 0;
   std::array<int32_t, 256> places_;
@@ -161,6 +162,10 @@ void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
       Search(order, some[lane], nearest, is_visible);
       const size_t count = nearest.count();
       batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
+      if (visible_) {
+        far_squares_[index] = count < kStencilNodes ? std::numeric_limits<double>::infinity()
+                                                    : nearest.Square(count - 1);
+      }
       Stencil& stencil = stencils_[index];
       stencil.places.fill(count > 0 ? nearest[0] : -1);
       for (size_t k = 0; k < count; ++k) {

@@ -15,6 +15,8 @@
 namespace cleave {
 namespace {
 
+constexpr int64_t kAhead = 8;  // how far ahead that is fetched which will be read
+
 bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
   Int32x8 of_stencil;
   std::memcpy(&of_stencil, stencil.places.data(), sizeof(of_stencil));
@@ -25,10 +27,12 @@ bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
 
 }  // namespace
 
-Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+Stencils::Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
                    std::span<const std::array<int32_t, 2>> edges,
                    std::optional<VisiblePlaces> visible)
-    : rest_(std::move(rest_by_place)), graph_(order, edges), visible_(std::move(visible)) {
+    : rest_(rest_by_place.begin(), rest_by_place.end()),
+      graph_(order, edges),
+      visible_(std::move(visible)) {
   stencils_.resize(rest_.size());
   reaches_.resize(rest_.size());
   lost_edges_.assign(rest_.size(), 0);
@@ -47,19 +51,20 @@ Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
   if (visible_) {
     near_fresh_.resize(cubes_.size());
     marks_.assign(rest_.size(), 0);
+    far_squares_.resize(rest_.size());
     ShowInCubes(order, visible_->places());
   }
   TouchAll();
   Rebuild(order, touched_);
 }
 
-Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+Stencils::Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
                    std::span<const std::array<int32_t, 2>> edges)
-    : Stencils(order, std::move(rest_by_place), edges, std::nullopt) {}
+    : Stencils(order, rest_by_place, edges, std::nullopt) {}
 
-Stencils::Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, const StreamMesh& mesh)
-    : Stencils(order, std::move(rest_by_place), mesh.edges,
-               VisiblePlaces(order, mesh.edges, mesh.tets)) {}
+Stencils::Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
+                   const StreamMesh& mesh)
+    : Stencils(order, rest_by_place, mesh.edges, VisiblePlaces(order, mesh.edges, mesh.tets)) {}
 
 void Stencils::Touch(int32_t place, Change change) {
   // Several threads may say so of one place.
@@ -80,10 +85,22 @@ void Stencils::TouchAround(int32_t near) {
       Touch(near, kSearch);
     }
     const int32_t first = *std::min_element(lost.begin(), lost.end());
-    for (const int32_t other : graph_.Neighbours(near)) {
-      // Stencils have earlier places only.
-      if (other < first || reaches_[static_cast<size_t>(other)] != kTwoEdges) continue;
-      if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other, kSearch);
+    const std::span<const int32_t> ring = graph_.Neighbours(near);
+    std::array<int32_t, 64> others;
+    for (size_t begin = 0; begin < ring.size(); begin += others.size()) {
+      size_t found = 0;
+      for (const int32_t place :
+           ring.subspan(begin, std::min(others.size(), ring.size() - begin))) {
+        const auto index = static_cast<size_t>(std::max(place, 0));
+        __builtin_prefetch(stencils_.data() + index);
+        others[found] = place;
+        // Stencils have earlier places only. Without branches, which nobody could predict.
+        found += static_cast<size_t>((place >= first) & (reaches_[index] == kTwoEdges) &
+                                     (ChangeOf(std::max(place, 0)) == kNone));
+      }
+      for (const int32_t other : std::span(others).first(found)) {
+        if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other, kSearch);
+      }
     }
   };
   std::array<int32_t, 64> lost;
@@ -103,15 +120,21 @@ void Stencils::TouchAround(int32_t near) {
 void Stencils::TouchInSpace() {
   ParallelFor(graph_.places(), 8192, [&](int64_t begin, int64_t end) {
     for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
-      const int32_t piece = pieces_[place];
-      if (reaches_[static_cast<size_t>(place)] < kInSpace || !pieces_.IsNew(piece)) continue;
-      const Stencil& stencil = stencils_[static_cast<size_t>(place)];
-      if (stencil.leads()) continue;
-      for (const int32_t other : stencil.places) {
-        if (pieces_[other] != piece) Touch(place, kSearch);
+      if (reaches_[static_cast<size_t>(place)] >= kInSpace && LostPlaces(place)) {
+        Touch(place, kSearch);
       }
     }
   });
+}
+
+// Of a stencil that was found in space: whether some of its places are now of another piece.
+bool Stencils::LostPlaces(int32_t place) const {
+  const int32_t piece = pieces_[place];
+  const Stencil& stencil = stencils_[static_cast<size_t>(place)];
+  if (!pieces_.IsNew(piece) || stencil.leads()) return false;
+  bool lost = false;
+  for (const int32_t other : stencil.places) lost |= pieces_[other] != piece;
+  return lost;
 }
 
 void Stencils::TouchAll() {
@@ -177,17 +200,24 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     }
     TouchAll();
   } else {
-    std::vector<int32_t> ends;
-    for (const int32_t edge : fresh) {
-      graph_.Break(edge);
-      for (const int32_t end : graph_.Ends(edge)) {
-        uint8_t& lost_edges = lost_edges_[static_cast<size_t>(end)];
-        if (lost_edges == 0) ends.push_back(end);
-        lost_edges = 1;
+    ParallelFor(static_cast<int64_t>(fresh.size()), 512, [&](int64_t begin, int64_t end) {
+      for (int64_t at = begin; at < end; ++at) {
+        if (at + kAhead < end) graph_.PrefetchEdge(fresh[static_cast<size_t>(at + kAhead)]);
+        const int32_t edge = fresh[static_cast<size_t>(at)];
+        graph_.Break(edge);
+        for (const int32_t place : graph_.Ends(edge)) {
+          std::atomic_ref<uint8_t>(lost_edges_[static_cast<size_t>(place)])
+              .store(1, std::memory_order_relaxed);
+        }
       }
-    }
+    });
+    std::vector<int32_t> ends;
+    ListMarked(lost_edges_, ends);
     ParallelFor(static_cast<int64_t>(ends.size()), 64, [&](int64_t begin, int64_t end) {
-      for (int64_t at = begin; at < end; ++at) TouchAround(ends[static_cast<size_t>(at)]);
+      for (int64_t at = begin; at < end; ++at) {
+        if (at + kAhead < end) graph_.Prefetch(ends[static_cast<size_t>(at + kAhead)]);
+        TouchAround(ends[static_cast<size_t>(at)]);
+      }
     });
     for (const int32_t end : ends) lost_edges_[static_cast<size_t>(end)] = 0;
     bool splits = false;
@@ -199,12 +229,7 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
     };
     if (visible_) {
       RunBoth(split, show);
-      RunBoth(
-          [&] {
-            if (splits) TouchInSpace();
-            TouchInCubesOfFresh(order);
-          },
-          [&] { FindLeaders(); });
+      RunBoth([&] { TouchInSpaceInView(order, splits); }, [&] { FindLeaders(); });
     } else {
       split();
       if (splits) TouchInSpace();

@@ -2,11 +2,13 @@
 #define CLEAVE_CORE_STREAM_STENCILS_H_
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/base/large_vector.h"
 #include "core/base/vec3.h"
 #include "core/stream/cube_index.h"
 #include "core/stream/edge_graph.h"
@@ -35,10 +37,10 @@ struct alignas(64) Stencil {
 // about. Loops run on the current TBB arena.
 class Stencils {
  public:
-  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+  Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
            std::span<const std::array<int32_t, 2>> edges);
   // Of a surface view.
-  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place, const StreamMesh& mesh);
+  Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place, const StreamMesh& mesh);
 
   // Brings everything to this set of broken edges (ascending ids in range). Where edges only broke,
   // the work is in proportion to what they touch. Returns the places whose stencil was made anew,
@@ -62,11 +64,11 @@ class Stencils {
   // The lowest place that was visible before that SetBroken and shares an edge, whole or broken,
   // with `place`; or -1.
   int32_t KnownNeighbour(int32_t place) const;
-  const std::vector<Vec3>& rest_positions() const { return rest_; }  // m, by place
+  const LargeVector<Vec3>& rest_positions() const { return rest_; }  // m, by place
   const std::vector<int32_t>& broken() const { return broken_; }
 
  private:
-  Stencils(const NodeOrder& order, std::vector<Vec3> rest_by_place,
+  Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
            std::span<const std::array<int32_t, 2>> edges, std::optional<VisiblePlaces> visible);
 
   // Where a stencil's places were found: over one edge, over two, or in space, there in cubes of
@@ -94,22 +96,26 @@ class Stencils {
   void FindLeaders();
   void ShowInCubes(const NodeOrder& order, std::span<const int32_t> places);
   void TouchRoundFresh(const NodeOrder& order);
-  void TouchInCubesOfFresh(const NodeOrder& order);
+  void TouchInSpaceInView(const NodeOrder& order, bool splits);
   void TouchRing(int32_t between);
 
   void TouchAll();
   void Touch(int32_t place, Change change);
+  Change ChangeOf(int32_t place) {  // as far as is known
+    return std::atomic_ref(changes_[static_cast<size_t>(place)]).load(std::memory_order_relaxed);
+  }
+  bool LostPlaces(int32_t place) const;
   void TouchAround(int32_t near);
   void TouchInSpace();
   void TakeTouched();
   static void ListMarked(std::span<const uint8_t> marks, std::vector<int32_t>& places);
 
-  std::vector<Vec3> rest_;  // m, by place
+  LargeVector<Vec3> rest_;  // m, by place
   EdgeGraph graph_;
   // Of each group: the coarser places, in a surface view those that are visible.
   std::vector<std::array<CubeIndex, kCubeSizes>> cubes_;
   Pieces pieces_;
-  std::vector<Stencil> stencils_;
+  LargeVector<Stencil> stencils_;
   std::vector<Reach> reaches_;
   std::vector<int32_t> broken_;
   std::vector<uint8_t> lost_edges_;  // by place: 1 in a call that breaks some
@@ -119,6 +125,8 @@ class Stencils {
   std::optional<VisiblePlaces> visible_;
   std::vector<int32_t> fresh_;
   std::vector<uint8_t> marks_;  // by place; all 0 but in SetBroken
+  // Of each place's stencil: how far its last place is, squared (m^2), or infinity if it has room.
+  std::vector<double> far_squares_;
   // Of each group: the cubes that touch one that coarser fresh places are in.
   std::vector<std::array<CubeSet, kCubeSizes>> near_fresh_;
   std::vector<int32_t> leaders_;    // ascending

@@ -12,7 +12,9 @@ namespace cleave {
 namespace {
 
 constexpr uint8_t kFresh = 1;
-constexpr uint8_t kNextToFresh = 2;
+constexpr uint8_t kDone = 2;  // TouchRing, of what is next to fresh places
+constexpr size_t kRoom = 64;
+constexpr size_t kAhead = 8;  // how many places on what will be read is fetched
 
 }  // namespace
 
@@ -35,9 +37,12 @@ void Stencils::ShowInCubes(const NodeOrder& order, std::span<const int32_t> plac
       CubeIndex& cubes = cubes_[at / kCubeSizes][at % kCubeSizes];
       if (cubes.empty()) continue;
       const int32_t coarse_end = order.group_begins[at / kCubeSizes];
-      for (const int32_t place : places) {
-        if (place >= coarse_end) break;
-        cubes.Add(order.codes[static_cast<size_t>(place)], place);
+      const auto code = [&](size_t k) { return order.codes[static_cast<size_t>(places[k])]; };
+      const auto count = static_cast<size_t>(
+          std::lower_bound(places.begin(), places.end(), coarse_end) - places.begin());
+      for (size_t k = 0; k < count; ++k) {
+        if (k + kAhead < count) cubes.PrefetchOf(code(k + kAhead));
+        cubes.Add(code(k), places[k]);
       }
     }
   });
@@ -68,48 +73,45 @@ void Stencils::TouchRoundFresh(const NodeOrder& order) {
     marks_[static_cast<size_t>(place)] = kFresh;
     Touch(place, kSearchAnew);
   }
-  ParallelFor(static_cast<int64_t>(fresh_.size()), 256, [&](int64_t begin, int64_t end) {
+  ParallelFor(static_cast<int64_t>(fresh_.size()), 64, [&](int64_t begin, int64_t end) {
     for (int64_t at = begin; at < end; ++at) {
+      if (at + 1 < end) {
+        for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at + 1)])) {
+          graph_.Prefetch(std::max(place, 0));
+        }
+      }
       for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at)])) {
         if (place < 0) continue;
         const std::atomic_ref<uint8_t> mark(marks_[static_cast<size_t>(place)]);
-        if ((mark.load(std::memory_order_relaxed) & kNextToFresh) == 0) {
-          mark.fetch_or(kNextToFresh, std::memory_order_relaxed);
-        }
+        if ((mark.load(std::memory_order_relaxed) & kDone) != 0) continue;
+        if ((mark.fetch_or(kDone, std::memory_order_relaxed) & kDone) == 0) TouchRing(place);
       }
-    }
-  });
-  std::vector<int32_t> marked;
-  ListMarked(marks_, marked);
-  ParallelFor(static_cast<int64_t>(marked.size()), 64, [&](int64_t begin, int64_t end) {
-    for (int64_t at = begin; at < end; ++at) {
-      const int32_t place = marked[static_cast<size_t>(at)];
-      if ((marks_[static_cast<size_t>(place)] & kNextToFresh) != 0) TouchRing(place);
     }
   });
   std::fill(marks_.begin(), marks_.end(), uint8_t{0});
 }
 
-// And those that were found in space, in cubes that fresh places touch, of pieces that have some;
-// also those that found one place alone, since that may be what led their piece before.
-void Stencils::TouchInCubesOfFresh(const NodeOrder& order) {
-  if (fresh_.empty()) return;
+// Those that were found in space: where `splits` says that a piece split, those that lost places to
+// another; and in cubes that fresh places touch, those of pieces that have some; also those that
+// found one place alone, since that may be what led their piece before.
+void Stencils::TouchInSpaceInView(const NodeOrder& order, bool splits) {
   std::vector<uint8_t> has_fresh(static_cast<size_t>(pieces_.count()), 0);
   for (const int32_t place : fresh_) has_fresh[static_cast<size_t>(pieces_[place])] = 1;
   const std::vector<int32_t>& places = visible_->places();
   ParallelFor(static_cast<int64_t>(places.size()), 4096, [&](int64_t begin, int64_t end) {
     size_t group = order.GroupOf(places[static_cast<size_t>(begin)]);
     for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      const auto place = static_cast<size_t>(places[at]);
-      while (places[at] >= order.group_begins[group + 1]) ++group;
-      if (reaches_[place] < kInSpace || has_fresh[static_cast<size_t>(pieces_[places[at]])] == 0) {
-        continue;
-      }
-      const size_t size = reaches_[place] - kInSpace;
-      const uint64_t cube = order.codes[place] >> (3 * cubes_[group][size].bits());
-      const Stencil& stencil = stencils_[place];
+      const int32_t place = places[at];
+      const auto index = static_cast<size_t>(place);
+      while (place >= order.group_begins[group + 1]) ++group;
+      if (reaches_[index] < kInSpace || ChangeOf(place) >= kSearchInSpace) continue;
+      if (splits && LostPlaces(place)) Touch(place, kSearch);
+      if (has_fresh[static_cast<size_t>(pieces_[place])] == 0) continue;
+      const size_t size = reaches_[index] - kInSpace;
+      const uint64_t cube = order.codes[index] >> (3 * cubes_[group][size].bits());
+      const Stencil& stencil = stencils_[index];
       if (stencil.places[1] == stencil.places[0] || near_fresh_[group][size].Has(cube)) {
-        Touch(places[at], kSearchInSpace);
+        Touch(place, kSearchInSpace);
       }
     }
   });
@@ -119,43 +121,50 @@ void Stencils::TouchInCubesOfFresh(const NodeOrder& order) {
 // to it, what the fresh ones are near enough to.
 void Stencils::TouchRing(int32_t between) {
   const std::span<const int32_t> ring = graph_.Neighbours(between);
-  std::array<int32_t, 64> fresh{};
+  std::array<int32_t, kRoom> fresh;
   size_t count = 0;
   for (const int32_t place : ring) {
-    if (place < 0 || (marks_[static_cast<size_t>(place)] & kFresh) == 0) continue;
-    fresh[count++] = place;
-    if (count == fresh.size()) break;
+    const auto index = static_cast<size_t>(std::max(place, 0));
+    const uint8_t mark = std::atomic_ref(marks_[index]).load(std::memory_order_relaxed);
+    fresh[count] = place;  // without branches, which nobody could predict
+    count += static_cast<size_t>((place >= 0) & ((mark & kFresh) != 0));
+    if (count == kRoom) break;
   }
-  const bool are_all = count < fresh.size();
-  const auto square = [&](int32_t from, int32_t to) {
-    const Vec3& a = rest_[static_cast<size_t>(from)];
-    const Vec3& b = rest_[static_cast<size_t>(to)];
-    const double dx = b[0] - a[0];
-    const double dy = b[1] - a[1];
-    const double dz = b[2] - a[2];
-    return dx * dx + dy * dy + dz * dz;
-  };
+  const bool are_all = count < kRoom;
   const auto one_is_near = [&](int32_t place) {
-    const Stencil& stencil = stencils_[static_cast<size_t>(place)];
-    const int32_t last = stencil.places.back();
-    if (last == stencil.places[0] || !are_all) return true;  // there is room for more
-    const double reach = square(place, last);
+    const double reach = far_squares_[static_cast<size_t>(place)];
+    if (!are_all) return true;
+    const Vec3& centre = rest_[static_cast<size_t>(place)];
     for (size_t k = 0; k < count && fresh[k] < place; ++k) {
-      if (square(place, fresh[k]) <= reach) return true;
+      const Vec3& x = rest_[static_cast<size_t>(fresh[k])];
+      const double dx = x[0] - centre[0];
+      const double dy = x[1] - centre[1];
+      const double dz = x[2] - centre[2];
+      if (dx * dx + dy * dy + dz * dz <= reach) return true;
     }
     return false;
   };
   // Whether the search for it stopped before it came as far as fresh places are, at most `edges`.
   const auto touch = [&](int32_t place, Reach edges) {
-    const auto index = static_cast<size_t>(place);
-    if (place <= fresh[0] || !visible_->Has(place) || reaches_[index] < edges) return;
-    const std::atomic_ref<Change> change(changes_[index]);
-    if (change.load(std::memory_order_relaxed) == kSearchAnew) return;
-    if (reaches_[index] > edges || one_is_near(place)) Touch(place, kSearchAnew);
+    if (reaches_[static_cast<size_t>(place)] > edges || one_is_near(place)) {
+      Touch(place, kSearchAnew);
+    }
   };
-  touch(between, kOneEdge);
-  for (const int32_t place : ring) {
-    if (place >= 0) touch(place, kTwoEdges);
+  if (between > fresh[0] && visible_->Has(between) && ChangeOf(between) != kSearchAnew) {
+    touch(between, kOneEdge);
+  }
+  // Hidden places have no reach.
+  std::array<int32_t, kRoom> others;
+  for (size_t begin = 0; begin < ring.size(); begin += kRoom) {
+    size_t found = 0;
+    for (const int32_t place : ring.subspan(begin, std::min(kRoom, ring.size() - begin))) {
+      const int32_t other = std::max(place, 0);
+      others[found] = place;
+      found += static_cast<size_t>((place > fresh[0]) &
+                                   (reaches_[static_cast<size_t>(other)] >= kTwoEdges) &
+                                   (ChangeOf(other) != kSearchAnew));
+    }
+    for (size_t at = 0; at < found; ++at) touch(others[at], kTwoEdges);
   }
 }
 

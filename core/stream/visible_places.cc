@@ -10,6 +10,8 @@
 namespace cleave {
 namespace {
 
+constexpr size_t kAhead = 8;  // how far ahead that is fetched which will be read
+
 constexpr uint8_t kSeen = 1;   // visible before
 constexpr uint8_t kFresh = 2;  // only since the Break in work; above kSeen
 
@@ -143,26 +145,39 @@ void VisiblePlaces::List() {
 
 const std::vector<int32_t>& VisiblePlaces::Break(const EdgeGraph& graph,
                                                  std::span<const int32_t> edges) {
+  // Step by step, so that what the next one reads can be fetched ahead.
+  std::vector<int32_t> tets;  // that come apart
+  for (size_t k = 0; k < edges.size(); ++k) {
+    if (k + kAhead < edges.size()) {
+      for (const int32_t tet : TetsOf(edges[k + kAhead])) __builtin_prefetch(masks_.data() + tet);
+    }
+    const auto begin = static_cast<size_t>(offsets_[static_cast<size_t>(edges[k])]);
+    const std::span<const int32_t> of_edge = TetsOf(edges[k]);
+    for (size_t at = 0; at < of_edge.size(); ++at) {
+      uint8_t& mask = masks_[static_cast<size_t>(of_edge[at])];
+      const bool was_apart = kIsApart[mask];
+      mask |= edge_bits_[begin + at];
+      if (was_apart || !kIsApart[mask]) continue;
+      tets.push_back(of_edge[at]);
+      __builtin_prefetch(tets_.data() + of_edge[at]);
+    }
+  }
+  std::vector<int32_t> apart;  // places of tets that come apart
+  for (const int32_t tet : tets) {
+    for (const int32_t place : tets_[static_cast<size_t>(tet)]) {
+      uint8_t& is_apart = is_apart_[static_cast<size_t>(place)];
+      if (is_apart == 0) apart.push_back(place);
+      is_apart = 1;
+    }
+  }
   const auto show = [&](int32_t place) {
     uint8_t& is_visible = is_visible_[static_cast<size_t>(place)];
     is_visible = is_visible == 0 ? kFresh : is_visible;
   };
-  for (const int32_t edge : edges) {
-    for (auto at = static_cast<size_t>(offsets_[static_cast<size_t>(edge)]);
-         at < static_cast<size_t>(offsets_[static_cast<size_t>(edge) + 1]); ++at) {
-      const auto tet = static_cast<size_t>(edge_tets_[at]);
-      uint8_t& mask = masks_[tet];
-      const bool was_apart = kIsApart[mask];
-      mask |= edge_bits_[at];
-      if (was_apart || !kIsApart[mask]) continue;
-      for (const int32_t place : tets_[tet]) {
-        uint8_t& is_apart = is_apart_[static_cast<size_t>(place)];
-        if (is_apart != 0) continue;
-        is_apart = 1;
-        show(place);
-        for (const int32_t other : graph.Neighbours(place)) show(std::max(other, ~other));
-      }
-    }
+  for (size_t k = 0; k < apart.size(); ++k) {
+    if (k + kAhead < apart.size()) graph.Prefetch(apart[k + kAhead]);
+    show(apart[k]);
+    for (const int32_t other : graph.Neighbours(apart[k])) show(std::max(other, ~other));
   }
   List();
   return fresh_;

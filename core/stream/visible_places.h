@@ -2,10 +2,12 @@
 #define CLEAVE_CORE_STREAM_VISIBLE_PLACES_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/base/large_vector.h"
 #include "core/stream/edge_graph.h"
 #include "core/stream/node_order.h"
 
@@ -33,12 +35,17 @@ class VisiblePlaces {
 
  private:
   void List();
+  std::span<const int32_t> TetsOf(int32_t edge) const {
+    const auto begin = static_cast<size_t>(offsets_[static_cast<size_t>(edge)]);
+    const auto end = static_cast<size_t>(offsets_[static_cast<size_t>(edge) + 1]);
+    return std::span(edge_tets_).subspan(begin, end - begin);
+  }
 
-  std::vector<std::array<int32_t, 4>> tets_;  // as places
+  LargeVector<std::array<int32_t, 4>> tets_;  // as places
   std::vector<uint8_t> masks_;                // of each tet: bit k for a broken edge kTetEdges[k]
-  std::vector<int32_t> offsets_;              // of each edge in edge_tets_
-  std::vector<int32_t> edge_tets_;
-  std::vector<uint8_t>
+  LargeVector<int32_t> offsets_;              // of each edge in edge_tets_
+  LargeVector<int32_t> edge_tets_;
+  LargeVector<uint8_t>
       edge_bits_;  // of each entry of edge_tets_: the edge's bit in that tet's mask
   std::vector<uint8_t> is_boundary_;  // by place
   std::vector<uint8_t> is_visible_;
