@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
@@ -13,37 +12,13 @@
 #include "core/stream/continuation_fit.h"
 #include "core/stream/residual_coder.h"
 #include "core/stream/section_coder.h"
+#include "core/stream/to_grid.h"
 
 namespace cleave {
 namespace {
 
 constexpr int64_t kGrainNodes = 4096;
 constexpr size_t kMaxSamples = 96;  // places a group that a continuation is fitted to
-
-// Positions of nodes in grid units, not rounded.
-class ToGrid {
- public:
-  ToGrid(std::span<const Vec3> positions, const Vec3& origin, double inverse_unit)
-      : positions_(positions),
-        corner_{origin[0], origin[1], origin[2], 0},
-        scale_{inverse_unit, inverse_unit, inverse_unit, 0} {}
-
-  Double4 operator()(size_t node) const {
-    const Vec3& x = positions_[node];
-    Double4 position;  // the fourth lane is of the next node, and scaled to zero
-    if (node + 1 == positions_.size()) {
-      position = Double4{x[0], x[1], x[2], 0};
-    } else {
-      std::memcpy(&position, &x, sizeof(position));
-    }
-    return (position - corner_) * scale_;
-  }
-
- private:
-  std::span<const Vec3> positions_;
-  Double4 corner_;
-  Double4 scale_;
-};
 
 }  // namespace
 

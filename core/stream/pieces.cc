@@ -15,6 +15,7 @@ namespace {
 
 constexpr int32_t kBlock = 64;
 constexpr int64_t kGrainBlocks = 16;
+constexpr int32_t kAhead = 4;  // how far ahead that is fetched which will be read
 
 }  // namespace
 
@@ -79,8 +80,8 @@ bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
         part(rank_b, rank_a);
         lose(block_a, kInside);
       } else {
-        if (HasLink(block_a, a, b)) lose(block_a, kLink);
-        if (HasLink(block_b, b, a)) lose(block_b, kLink);
+        if (HasLink(block_a, rank_a, b)) lose(block_a, kLink);
+        if (HasLink(block_b, rank_b, a)) lose(block_b, kLink);
       }
     }
   });
@@ -107,12 +108,11 @@ bool Pieces::Split(const EdgeGraph& graph, std::span<const int32_t> edges) {
   return Join();
 }
 
-bool Pieces::HasLink(size_t block, int32_t from, int32_t to) const {
+bool Pieces::HasLink(size_t block, int32_t rank, int32_t to) const {
   const std::vector<Link>& links = blocks_[block].links;
-  auto link = std::lower_bound(
-      links.begin(), links.end(), ranks_[static_cast<size_t>(from)],
-      [&](const Link& a, int32_t rank) { return ranks_[static_cast<size_t>(a.from)] < rank; });
-  for (; link != links.end() && link->from == from; ++link) {
+  auto link = std::lower_bound(links.begin(), links.end(), rank,
+                               [](const Link& a, int32_t least) { return a.rank < least; });
+  for (; link != links.end() && link->rank == rank; ++link) {
     if (link->to == to) return true;
   }
   return false;
@@ -164,11 +164,12 @@ void Pieces::FindLinks(const EdgeGraph& graph, int32_t block) {
   std::vector<Link>& links = blocks_[static_cast<size_t>(block)].links;
   links.clear();
   // Most edges join clumps that one just joined; a few that slip through are harmless.
-  std::array<Link, 64> recent;
+  std::array<std::pair<int32_t, int32_t>, 64> recent;
   recent.fill({-1, -1});
   std::array<std::pair<int32_t, int32_t>, 256> outside;  // clump and place that an edge leads to
   for (int32_t rank = begin; rank < end; ++rank) {
     const int32_t place = places_[static_cast<size_t>(rank)];
+    if (rank + kAhead < end) graph.Prefetch(places_[static_cast<size_t>(rank + kAhead)]);
     const int32_t from = clumps_[static_cast<size_t>(place)];
     std::span<const int32_t> others = graph.Neighbours(place);
     while (!others.empty()) {
@@ -182,10 +183,11 @@ void Pieces::FindLinks(const EdgeGraph& graph, int32_t block) {
       }
       others = others.subspan(some.size());
       for (const auto& [to, other] : std::span(outside).first(count)) {
-        Link& same = recent[static_cast<size_t>(to / kBlock + to) % recent.size()];
-        if (same.from == from && same.to == to) continue;
+        std::pair<int32_t, int32_t>& same =
+            recent[static_cast<size_t>(to / kBlock + to) % recent.size()];
+        if (same == std::pair(from, to)) continue;
         same = {from, to};
-        links.push_back({place, other});
+        links.push_back({rank, place, other});
       }
     }
   }

@@ -33,9 +33,10 @@ class Pieces {
   bool IsNew(int32_t piece) const { return is_new_[static_cast<size_t>(piece)] != 0; }
 
  private:
-  // An unbroken edge to another block, by places.
+  // An unbroken edge to another block.
   struct Link {
-    int32_t from;
+    int32_t rank;  // of `from`
+    int32_t from;  // places
     int32_t to;
   };
   struct Block {
@@ -46,7 +47,7 @@ class Pieces {
   void FindJoins(const EdgeGraph& graph, int32_t block);
   bool FindClumps(int32_t block);
   void FindLinks(const EdgeGraph& graph, int32_t block);
-  bool HasLink(size_t block, int32_t from, int32_t to) const;
+  bool HasLink(size_t block, int32_t rank, int32_t to) const;
   bool Join();
   int32_t Root(int32_t clump);
 

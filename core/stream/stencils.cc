@@ -202,6 +202,9 @@ const std::vector<int32_t>& Stencils::SetBroken(const NodeOrder& order,
   } else {
     ParallelFor(static_cast<int64_t>(fresh.size()), 512, [&](int64_t begin, int64_t end) {
       for (int64_t at = begin; at < end; ++at) {
+        if (at + 2 * kAhead < end) {
+          graph_.PrefetchSlots(fresh[static_cast<size_t>(at + 2 * kAhead)]);
+        }
         if (at + kAhead < end) graph_.PrefetchEdge(fresh[static_cast<size_t>(at + kAhead)]);
         const int32_t edge = fresh[static_cast<size_t>(at)];
         graph_.Break(edge);
