@@ -52,6 +52,19 @@ void TearOff(double grip, Demonstration& made) {
   made.frames_after_separation = kFrames;
 }
 
+// Wood takes up water in patches: where it differs only from node to node, wood breaks into crumbs
+// of single nodes, the smaller the finer the mesh.
+void Soak(Impurities& water) {
+  water.potency = 1;
+  water.noise = 0.5;
+  ImpurityLayer patches;
+  patches.name = "patches";
+  patches.source = NoiseField{.correlation_length = 0.015};
+  patches.potency = 1;
+  patches.blend = Blend::kAdd;
+  water.layers.push_back(patches);
+}
+
 // A fall from its own height is to this what one from a tree is to the wood that is torn.
 void Soften(Material& wood) {
   wood.youngs_modulus = 1e5;
@@ -115,10 +128,7 @@ Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& settin
   scene.materials.push_back(material);
   Impurities water;
   water.noise = 0.05;
-  if (damp) {
-    water.potency = 1;
-    water.noise = 0.5;
-  }
+  if (damp) Soak(water);
   scene.impurities = water;
 
   made.grip = NodesWhere(made.mesh, [grip](const Vec3& x) { return x[2] < grip; });

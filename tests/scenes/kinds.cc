@@ -59,7 +59,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        MeasureBranch,
        BranchCriteria(),
        {},
-       2.2},
+       2},
       {"locality",
        "Two slabs, one with an impure node",
        "Fig. 5, sec. 5",
