@@ -72,6 +72,16 @@ void Soften(Material& wood) {
   for (FibreFamily& family : wood.fibres) family.stiffness = 6e6;
 }
 
+// Sawn into above its foot, it tears there whatever its weakest place is, and nearly all of it
+// falls.
+void SawInto(double grip, Scene& scene) {
+  constexpr double kDistance = 0.01;  // m from the grip
+  constexpr double kWidth = 0.04;     // m
+  constexpr double kStrength = 0.3;   // times that of the wood
+  const double low = grip + kDistance;
+  scene.weakenings.push_back({BoxSelector{{-1, -1, low}, {1, 1, low + kWidth}}, kStrength});
+}
+
 // What has been torn off falls across the edge of a stone.
 void LetFall(Scene& scene) {
   scene.gravity = {0, 0, -9.81};
@@ -138,6 +148,7 @@ Demonstration MakeBranchOf(TetMesh mesh, double cell_size, const Setting& settin
   AddNodeSet(scene, "tip", made.pulled);
   AddMotion(scene, "foot");
   if (falls) {
+    SawInto(grip, scene);
     TearOff(grip, made);
     LetFall(scene);
   } else {

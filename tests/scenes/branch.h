@@ -9,8 +9,8 @@ namespace cleave {
 
 // A tapered branch with the stubs of two twigs, fibres along it, its foot pinned, its tip bent
 // aside and pulled. Variants: "dry"; "damp", with water, which degrades, on all nodes, in patches;
-// "dry-iso" and "damp-iso", without fibres; "dry-fall" and "damp-fall", of softer wood, whose tip
-// is let go when it is torn off and falls across the edge of a stone.
+// "dry-iso" and "damp-iso", without fibres; "dry-fall" and "damp-fall", of softer wood, sawn into
+// above the foot, whose tip is let go when it is torn off and falls across the edge of a stone.
 absl::StatusOr<Demonstration> MakeBranch(const Setting& setting);
 // The same of another body along z from the origin to kBranchLength, about kBranchDiameter thick,
 // of cells of that size (m), held by so much of each end (m); the setting's layout and coarseness
