@@ -12,7 +12,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "client/cpp/address.h"
+#include "client/cpp/call_with_retry.h"
 #include "client/cpp/rpc_error.h"
+#include "client/cpp/stubs.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -61,24 +63,17 @@ std::string SessionName(absl::string_view id_or_name) {
   return absl::StrCat("sessions/", SessionId(id_or_name));
 }
 
-Client::Client(std::string address, std::shared_ptr<grpc::Channel> channel, const StopFlag* stop)
-    : address_(std::move(address)),
-      channel_(std::move(channel)),
-      stop_(stop),
-      assets_(v1::AssetService::NewStub(channel_)),
-      frames_(v1::FrameService::NewStub(channel_)),
-      impurities_(v1::ImpurityService::NewStub(channel_)),
-      materials_(v1::MaterialService::NewStub(channel_)),
-      servers_(v1::ServerService::NewStub(channel_)),
-      sessions_(v1::SessionService::NewStub(channel_)) {}
+Client::Client(std::string address, std::unique_ptr<Stubs> stubs, const StopFlag* stop)
+    : address_(std::move(address)), stubs_(std::move(stubs)), stop_(stop) {}
+Client::~Client() = default;
 
 absl::StatusOr<std::unique_ptr<Client>> Client::Connect(absl::string_view address,
                                                         milliseconds timeout,
                                                         const StopFlag* stop) {
   CLEAVE_ASSIGN_OR_RETURN(const std::string target, ParseAddress(address));
-  auto channel =
-      grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(), ChannelArguments());
-  std::unique_ptr<Client> client(new Client(std::string(address), std::move(channel), stop));
+  auto stubs = std::make_unique<Stubs>(
+      grpc::CreateCustomChannel(target, grpc::InsecureChannelCredentials(), ChannelArguments()));
+  std::unique_ptr<Client> client(new Client(std::string(address), std::move(stubs), stop));
   v1::GetServerInfoRequest request;
   request.set_client_version(absl::StrCat("cleave ", kClientVersion));
   const auto deadline = std::chrono::steady_clock::now() + timeout;
@@ -91,7 +86,7 @@ absl::StatusOr<std::unique_ptr<Client>> Client::Connect(absl::string_view addres
     context.set_deadline(std::chrono::system_clock::now() +
                          std::max(milliseconds(50), std::min(left, milliseconds(500))));
     const grpc::Status answer =
-        client->servers_->GetServerInfo(&context, request, &client->server_);
+        client->stubs_->servers->GetServerInfo(&context, request, &client->server_);
     if (answer.ok()) return client;
     if (stop != nullptr && stop->requested())
       return absl::CancelledError(absl::StrCat("stopped while connecting to ", address));
@@ -111,7 +106,7 @@ absl::StatusOr<v1::CreateSessionResponse> Client::CreateSession(v1::CreateSessio
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(
       ForBodies(policy_), request.validate_only() ? "checking the scene" : "creating the session",
       stop_, [&](grpc::ClientContext& context) {
-        return sessions_->CreateSession(&context, request, &response);
+        return stubs_->sessions->CreateSession(&context, request, &response);
       }));
   return response;
 }
@@ -120,10 +115,10 @@ absl::StatusOr<v1::Session> Client::GetSession(const std::string& name) {
   v1::GetSessionRequest request;
   request.set_name(name);
   v1::Session session;
-  CLEAVE_RETURN_IF_ERROR(CallWithRetry(policy_, absl::StrCat("looking up ", name), stop_,
-                                       [&](grpc::ClientContext& context) {
-                                         return sessions_->GetSession(&context, request, &session);
-                                       }));
+  CLEAVE_RETURN_IF_ERROR(CallWithRetry(
+      policy_, absl::StrCat("looking up ", name), stop_, [&](grpc::ClientContext& context) {
+        return stubs_->sessions->GetSession(&context, request, &session);
+      }));
   return session;
 }
 
@@ -134,7 +129,7 @@ absl::StatusOr<std::vector<v1::Session>> Client::ListSessions() {
     v1::ListSessionsResponse page;
     CLEAVE_RETURN_IF_ERROR(
         CallWithRetry(policy_, "listing sessions", stop_, [&](grpc::ClientContext& context) {
-          return sessions_->ListSessions(&context, request, &page);
+          return stubs_->sessions->ListSessions(&context, request, &page);
         }));
     for (v1::Session& session : *page.mutable_sessions()) sessions.push_back(std::move(session));
     request.set_page_token(page.next_page_token());
@@ -151,7 +146,7 @@ absl::Status Client::DeleteSession(const std::string& name, bool allow_missing) 
   const absl::Status status = CallWithRetry(
       policy_, absl::StrCat("deleting ", name), stop_, [&](grpc::ClientContext& context) {
         ++attempts;
-        return sessions_->DeleteSession(&context, request, &response);
+        return stubs_->sessions->DeleteSession(&context, request, &response);
       });
   // The attempt whose answer was lost may be the one that deleted it.
   if (attempts > 1 && absl::IsNotFound(status)) return absl::OkStatus();
@@ -164,10 +159,10 @@ absl::StatusOr<v1::Session> Client::RunSession(const std::string& name, const v1
   *request.mutable_goal() = goal;
   request.set_request_id(NewRequestId());
   v1::Session session;
-  CLEAVE_RETURN_IF_ERROR(CallWithRetry(policy_, absl::StrCat("running ", name), stop_,
-                                       [&](grpc::ClientContext& context) {
-                                         return sessions_->RunSession(&context, request, &session);
-                                       }));
+  CLEAVE_RETURN_IF_ERROR(CallWithRetry(
+      policy_, absl::StrCat("running ", name), stop_, [&](grpc::ClientContext& context) {
+        return stubs_->sessions->RunSession(&context, request, &session);
+      }));
   return session;
 }
 
@@ -183,7 +178,7 @@ absl::StatusOr<v1::StepSessionResponse> Client::StepSession(const std::string& n
   policy.call_deadline = budget;
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(
       policy, absl::StrCat("stepping ", name), stop_, [&](grpc::ClientContext& context) {
-        return sessions_->StepSession(&context, request, &response);
+        return stubs_->sessions->StepSession(&context, request, &response);
       }));
   return response;
 }
@@ -196,7 +191,7 @@ absl::StatusOr<v1::Session> Client::PauseSession(const std::string& name, bool a
   // Pausing is what a stop request leads to, so it is not itself stopped by one.
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(
       policy_, absl::StrCat("pausing ", name), nullptr, [&](grpc::ClientContext& context) {
-        return sessions_->PauseSession(&context, request, &session);
+        return stubs_->sessions->PauseSession(&context, request, &session);
       }));
   return session;
 }
@@ -209,7 +204,8 @@ absl::StatusOr<v1::ListFramesResponse> Client::ListFrames(const std::string& nam
   v1::ListFramesResponse response;
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(policy_, absl::StrCat("listing the frames of ", name), stop_,
                                        [&](grpc::ClientContext& context) {
-                                         return frames_->ListFrames(&context, request, &response);
+                                         return stubs_->frames->ListFrames(&context, request,
+                                                                           &response);
                                        }));
   return response;
 }
@@ -219,7 +215,7 @@ absl::StatusOr<v1::ProbeMaterialResponse> Client::ProbeMaterial(
   v1::ProbeMaterialResponse response;
   CLEAVE_RETURN_IF_ERROR(
       CallWithRetry(policy_, "probing the material", stop_, [&](grpc::ClientContext& context) {
-        return materials_->ProbeMaterial(&context, request, &response);
+        return stubs_->materials->ProbeMaterial(&context, request, &response);
       }));
   return response;
 }
@@ -228,7 +224,7 @@ absl::StatusOr<v1::ListMaterialPresetsResponse> Client::ListMaterialPresets() {
   v1::ListMaterialPresetsResponse response;
   CLEAVE_RETURN_IF_ERROR(
       CallWithRetry(policy_, "listing presets", stop_, [&](grpc::ClientContext& context) {
-        return materials_->ListMaterialPresets(&context, {}, &response);
+        return stubs_->materials->ListMaterialPresets(&context, {}, &response);
       }));
   return response;
 }
@@ -238,7 +234,7 @@ absl::StatusOr<v1::PreviewImpurityResponse> Client::PreviewImpurity(
   v1::PreviewImpurityResponse response;
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(
       ForBodies(policy_), "previewing impurities", stop_, [&](grpc::ClientContext& context) {
-        return impurities_->PreviewImpurity(&context, request, &response);
+        return stubs_->impurities->PreviewImpurity(&context, request, &response);
       }));
   return response;
 }

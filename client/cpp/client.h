@@ -1,8 +1,6 @@
 #ifndef CLEAVE_CLIENT_CPP_CLIENT_H_
 #define CLEAVE_CLIENT_CPP_CLIENT_H_
 
-#include <grpcpp/channel.h>
-
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -12,20 +10,23 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
-#include "cleave/v1/asset.grpc.pb.h"
-#include "cleave/v1/frame.grpc.pb.h"
-#include "cleave/v1/impurity.grpc.pb.h"
-#include "cleave/v1/material.grpc.pb.h"
-#include "cleave/v1/server.grpc.pb.h"
-#include "cleave/v1/session.grpc.pb.h"
+#include "cleave/v1/frame.pb.h"
+#include "cleave/v1/impurity.pb.h"
+#include "cleave/v1/material.pb.h"
+#include "cleave/v1/server.pb.h"
+#include "cleave/v1/session.pb.h"
 #include "client/cpp/retry.h"
 
 namespace cleave {
+
+struct Stubs;
 
 // A connection to a server and its calls. Calls are repeated where that is safe
 // (RetryPolicy); errors are those of StatusFromRpc. Thread-safe.
 class Client {
  public:
+  ~Client();
+
   // Waits for the server to answer. Errors: InvalidArgument for the address, Unavailable when
   // nothing answers within `timeout`. `stop` may be null; it ends waiting and repeating, and must
   // outlive the client.
@@ -56,26 +57,19 @@ class Client {
       const v1::PreviewImpurityRequest& request);
 
   // For the calls that stream: mesh_transfer.h, frame_stream.h.
-  v1::AssetService::Stub& assets() { return *assets_; }
-  v1::FrameService::Stub& frames() { return *frames_; }
-  v1::SessionService::Stub& sessions() { return *sessions_; }
+  Stubs& stubs() { return *stubs_; }
   const RetryPolicy& policy() const { return policy_; }
   const StopFlag* stop() const { return stop_; }
 
  private:
-  Client(std::string address, std::shared_ptr<grpc::Channel> channel, const StopFlag* stop);
+  Client(std::string address, std::unique_ptr<Stubs> stubs, const StopFlag* stop);
 
   std::string address_;
-  std::shared_ptr<grpc::Channel> channel_;
+  // Behind a pointer, so that who includes this does not parse gRPC: most of its users only call.
+  std::unique_ptr<Stubs> stubs_;
   const StopFlag* stop_;
   RetryPolicy policy_;
   v1::ServerInfo server_;
-  std::unique_ptr<v1::AssetService::Stub> assets_;
-  std::unique_ptr<v1::FrameService::Stub> frames_;
-  std::unique_ptr<v1::ImpurityService::Stub> impurities_;
-  std::unique_ptr<v1::MaterialService::Stub> materials_;
-  std::unique_ptr<v1::ServerService::Stub> servers_;
-  std::unique_ptr<v1::SessionService::Stub> sessions_;
 };
 
 // A random id of 32 hexadecimal digits, for request ids and names that nobody else may choose.

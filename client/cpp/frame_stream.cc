@@ -1,10 +1,14 @@
 #include "client/cpp/frame_stream.h"
 
+#include <grpcpp/client_context.h>
+#include <grpcpp/support/sync_stream.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/rpc_error.h"
+#include "client/cpp/stubs.h"
 #include "core/base/status.h"
 #include "proto/convert/rung.h"
 
@@ -22,6 +26,12 @@ bool IsCut(const absl::Status& status) { return absl::IsUnavailable(status); }
 
 }  // namespace
 
+// The call that runs; its reader goes before its context.
+struct FrameStream::Call {
+  grpc::ClientContext context;
+  std::unique_ptr<grpc::ClientReader<v1::StreamFramesResponse>> reader;
+};
+
 FrameStream::FrameStream(Client& client, FrameStreamOptions options)
     : client_(client), options_(std::move(options)), position_(options_.resume) {}
 
@@ -35,19 +45,18 @@ bool FrameStream::cancelled() {
 void FrameStream::Cancel() {
   const std::lock_guard<std::mutex> lock(mutex_);
   cancelled_ = true;
-  if (context_ != nullptr) context_->TryCancel();
+  if (call_ != nullptr) call_->context.TryCancel();
 }
 
 void FrameStream::Disconnect() {
-  if (reader_ == nullptr) return;
-  context_->TryCancel();
+  if (call_ == nullptr) return;
+  call_->context.TryCancel();
   v1::StreamFramesResponse rest;
-  while (reader_->Read(&rest)) {
+  while (call_->reader->Read(&rest)) {
   }
-  reader_->Finish();  // its status was read, or is the cancellation just made
+  call_->reader->Finish();  // its status was read, or is the cancellation just made
   const std::lock_guard<std::mutex> lock(mutex_);
-  reader_.reset();
-  context_.reset();
+  call_.reset();
 }
 
 absl::Status FrameStream::Connect() {
@@ -71,19 +80,18 @@ absl::Status FrameStream::Connect() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (cancelled_) return absl::CancelledError("the frame stream was cancelled");
-    context_ = std::make_unique<grpc::ClientContext>();
+    call_ = std::make_unique<Call>();
   }
-  reader_ = client_.frames().StreamFrames(context_.get(), request);
+  call_->reader = client_.stubs().frames->StreamFrames(&call_->context, request);
   assembly_.clear();
   assembly_bytes_ = 0;
   events_.Clear();
   gap_.reset();
   v1::StreamFramesResponse response;
-  if (!reader_->Read(&response)) {
-    const grpc::Status status = reader_->Finish();
+  if (!call_->reader->Read(&response)) {
+    const grpc::Status status = call_->reader->Finish();
     const std::lock_guard<std::mutex> lock(mutex_);
-    reader_.reset();
-    context_.reset();
+    call_.reset();
     if (status.ok()) return absl::UnavailableError("the frame stream ended before it began");
     return StatusFromRpc(status, absl::StrCat("streaming frames of ", options_.session));
   }
@@ -128,7 +136,7 @@ absl::Status FrameStream::Recover(const absl::Status& why) {
 }
 
 absl::Status FrameStream::Open() {
-  while (reader_ == nullptr) {
+  while (call_ == nullptr) {
     const absl::Status status = Connect();
     if (status.ok()) break;
     CLEAVE_RETURN_IF_ERROR(Recover(status));
@@ -206,7 +214,7 @@ absl::Status FrameStream::TakeGap(const FrameHeader& header, std::optional<Frame
 
 absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
   v1::StreamFramesResponse response;
-  while (reader_->Read(&response)) {
+  while (call_->reader->Read(&response)) {
     if (response.has_heartbeat()) {
       head_frame_ = std::max(head_frame_, response.heartbeat().head_frame());
     } else if (response.has_end()) {
@@ -228,11 +236,10 @@ absl::StatusOr<std::optional<StreamedFrame>> FrameStream::ReadOne() {
       if (!frame.ok() || frame->has_value()) return frame;
     }
   }
-  const grpc::Status status = reader_->Finish();
+  const grpc::Status status = call_->reader->Finish();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    reader_.reset();
-    context_.reset();
+    call_.reset();
   }
   if (status.ok()) return absl::UnavailableError("the frame stream was cut");
   return StatusFromRpc(status, absl::StrCat("streaming frames of ", options_.session));

@@ -1,9 +1,6 @@
 #ifndef CLEAVE_CLIENT_CPP_FRAME_STREAM_H_
 #define CLEAVE_CLIENT_CPP_FRAME_STREAM_H_
 
-#include <grpcpp/client_context.h>
-#include <grpcpp/support/sync_stream.h>
-
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -143,10 +140,10 @@ class FrameStream {
   uint64_t events_bytes_ = 0;
   std::optional<FrameGap> gap_;  // before the frame to come
 
-  std::mutex mutex_;  // guards context_'s exchange against Cancel
+  struct Call;
+  std::mutex mutex_;  // guards call_'s exchange against Cancel
   bool cancelled_ = false;
-  std::unique_ptr<grpc::ClientContext> context_;
-  std::unique_ptr<grpc::ClientReader<v1::StreamFramesResponse>> reader_;
+  std::unique_ptr<Call> call_;
 };
 
 }  // namespace cleave

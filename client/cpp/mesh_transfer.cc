@@ -1,5 +1,6 @@
 #include "client/cpp/mesh_transfer.h"
 
+#include <grpcpp/client_context.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -9,7 +10,9 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "client/cpp/call_with_retry.h"
 #include "client/cpp/rpc_error.h"
+#include "client/cpp/stubs.h"
 #include "core/base/crc32c.h"
 #include "core/base/sha256.h"
 #include "core/base/status.h"
@@ -48,7 +51,7 @@ class UploadAttempt {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kStreamDeadline);
     v1::UploadAssetResponse response;
-    const auto writer = client_.assets().UploadAsset(&context, &response);
+    const auto writer = client_.stubs().assets->UploadAsset(&context, &response);
     bool first = true;
     do {
       CLEAVE_ASSIGN_OR_RETURN(v1::UploadAssetRequest request, Chunk(offset, first));
@@ -72,11 +75,11 @@ class UploadAttempt {
     v1::QueryUploadStatusRequest request;
     request.set_upload_id(id_);
     v1::UploadStatus status;
-    const absl::Status result =
-        CallWithRetry(client_.policy(), "asking how much of the mesh is there", client_.stop(),
-                      [&](grpc::ClientContext& context) {
-                        return client_.assets().QueryUploadStatus(&context, request, &status);
-                      });
+    const absl::Status result = CallWithRetry(
+        client_.policy(), "asking how much of the mesh is there", client_.stop(),
+        [&](grpc::ClientContext& context) {
+          return client_.stubs().assets->QueryUploadStatus(&context, request, &status);
+        });
     if (absl::IsNotFound(result)) return 0;
     if (!result.ok()) return result;
     return status.committed_size();
@@ -124,8 +127,8 @@ absl::StatusOr<bool> ServerHas(Client& client, const std::string& digest, int64_
   v1::FindMissingAssetsResponse response;
   CLEAVE_RETURN_IF_ERROR(CallWithRetry(client.policy(), "asking whether the mesh is there",
                                        client.stop(), [&](grpc::ClientContext& context) {
-                                         return client.assets().FindMissingAssets(&context, request,
-                                                                                  &response);
+                                         return client.stubs().assets->FindMissingAssets(
+                                             &context, request, &response);
                                        }));
   return response.missing().empty();
 }
@@ -138,7 +141,7 @@ absl::Status DownloadRest(Client& client, const std::string& asset, std::string&
   request.set_offset(static_cast<int64_t>(bytes.size()));
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kStreamDeadline);
-  const auto reader = client.assets().DownloadAsset(&context, request);
+  const auto reader = client.stubs().assets->DownloadAsset(&context, request);
   v1::DownloadAssetResponse chunk;
   bool whole = false;
   absl::Status fault;

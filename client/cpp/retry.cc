@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <thread>
 
-#include "absl/strings/str_cat.h"
 #include "client/cpp/rpc_error.h"
 
 namespace cleave {
@@ -30,19 +29,6 @@ bool WaitUnlessStopped(milliseconds delay, const StopFlag* stop) {
     std::this_thread::sleep_for(std::min<std::chrono::steady_clock::duration>(left, kLook));
   }
   return false;
-}
-
-absl::Status CallWithRetry(const RetryPolicy& policy, absl::string_view words, const StopFlag* stop,
-                           const std::function<grpc::Status(grpc::ClientContext&)>& call) {
-  for (int attempt = 1;; ++attempt) {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + policy.call_deadline);
-    const absl::Status status = StatusFromRpc(call(context), words);
-    const std::optional<milliseconds> delay = RetryDelay(policy, attempt, status);
-    if (!delay.has_value()) return status;
-    if (!WaitUnlessStopped(*delay, stop))
-      return absl::CancelledError(absl::StrCat(words, ": stopped while waiting for the server"));
-  }
 }
 
 }  // namespace cleave

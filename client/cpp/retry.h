@@ -1,14 +1,10 @@
 #ifndef CLEAVE_CLIENT_CPP_RETRY_H_
 #define CLEAVE_CLIENT_CPP_RETRY_H_
 
-#include <grpcpp/client_context.h>
-
 #include <chrono>
-#include <functional>
 #include <optional>
 
 #include "absl/status/status.h"
-#include "absl/strings/string_view.h"
 #include "core/base/stop_flag.h"
 
 namespace cleave {
@@ -30,11 +26,6 @@ std::optional<std::chrono::milliseconds> RetryDelay(const RetryPolicy& policy, i
 
 // Waits; answers false at once when `stop` is requested (looked at every 50 ms).
 bool WaitUnlessStopped(std::chrono::milliseconds delay, const StopFlag* stop);
-
-// Runs `call` with a fresh context until it succeeds, fails for good or the attempts are used up.
-// `words` names the call for messages. `stop` may be null.
-absl::Status CallWithRetry(const RetryPolicy& policy, absl::string_view words, const StopFlag* stop,
-                           const std::function<grpc::Status(grpc::ClientContext&)>& call);
 
 }  // namespace cleave
 

@@ -14,6 +14,7 @@
 #include "client/cpp/client.h"
 #include "client/cpp/frame_stream.h"
 #include "client/cpp/rpc_error.h"
+#include "client/cpp/stubs.h"
 #include "proto/convert/probe.h"
 #include "tests/integration/test_server.h"
 
@@ -340,7 +341,7 @@ TEST_F(ControlTest, AStoppedServerEndsStreamsWithAMessage) {
   v1::StreamFramesRequest request;
   request.set_session("sessions/bar");
   request.set_follow(true);
-  const auto reader = client_->frames().StreamFrames(&context, request);
+  const auto reader = client_->stubs().frames->StreamFrames(&context, request);
   v1::StreamFramesResponse message;
   ASSERT_TRUE(reader->Read(&message));
   EXPECT_TRUE(message.has_start());

@@ -1,6 +1,7 @@
 // Viewers ask for different accuracies of one session, come and go, and programs die under them.
 
 #include <gmock/gmock.h>
+#include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -17,6 +18,7 @@
 #include "client/cpp/client.h"
 #include "client/cpp/frame_stream.h"
 #include "client/cpp/mesh_transfer.h"
+#include "client/cpp/stubs.h"
 #include "core/mesh/incidence.h"
 #include "tests/integration/frame_streams.h"
 #include "tests/integration/test_server.h"
@@ -240,7 +242,7 @@ TEST(RungsTest, WhoWantsTheLatestSkipsToTheNewestKeyFrame) {
   request.set_session("sessions/bar");
   request.set_latest(true);
   grpc::ClientContext context;
-  const auto reader = client->frames().StreamFrames(&context, request);
+  const auto reader = client->stubs().frames->StreamFrames(&context, request);
   v1::StreamFramesResponse response;
   ASSERT_TRUE(reader->Read(&response) && response.has_start());
   ASSERT_TRUE(reader->Read(&response));

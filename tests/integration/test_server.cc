@@ -1,6 +1,7 @@
 #include "tests/integration/test_server.h"
 
 #include <fcntl.h>
+#include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
@@ -10,6 +11,7 @@
 #include <chrono>
 
 #include "client/cpp/frame_stream.h"
+#include "client/cpp/stubs.h"
 
 namespace cleave {
 namespace {
@@ -151,7 +153,7 @@ v1::Session WaitFor(Client& client, const std::string& id,
   context.set_deadline(std::chrono::system_clock::now() + kPatience);
   v1::WatchSessionRequest request;
   request.set_name(SessionName(id));
-  const auto reader = client.sessions().WatchSession(&context, request);
+  const auto reader = client.stubs().sessions->WatchSession(&context, request);
   v1::Session session;
   while (reader->Read(&session)) {
     if (!wanted(session)) continue;

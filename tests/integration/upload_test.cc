@@ -10,6 +10,7 @@
 #include "client/cpp/client.h"
 #include "client/cpp/mesh_transfer.h"
 #include "client/cpp/rpc_error.h"
+#include "client/cpp/stubs.h"
 #include "core/base/crc32c.h"
 #include "core/base/sha256.h"
 #include "proto/convert/mesh.h"
@@ -76,7 +77,8 @@ class UploadTest : public testing::Test {
     v1::QueryUploadStatusRequest request;
     request.set_upload_id("upload-0001");
     v1::UploadStatus status;
-    const grpc::Status answer = client_->assets().QueryUploadStatus(&context, request, &status);
+    const grpc::Status answer =
+        client_->stubs().assets->QueryUploadStatus(&context, request, &status);
     EXPECT_TRUE(answer.ok()) << answer.error_message();
     return status.committed_size();
   }

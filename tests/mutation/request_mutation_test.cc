@@ -11,6 +11,9 @@
 #include <map>
 
 #include "absl/strings/escaping.h"
+#include "cleave/v1/asset.grpc.pb.h"
+#include "cleave/v1/frame.grpc.pb.h"
+#include "cleave/v1/session.grpc.pb.h"
 #include "client/cpp/mesh_transfer.h"
 #include "core/base/crc32c.h"
 #include "core/base/sha256.h"

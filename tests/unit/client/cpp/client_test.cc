@@ -6,6 +6,7 @@
 #include <chrono>
 #include <set>
 
+#include "cleave/v1/session.grpc.pb.h"
 #include "tests/unit/client/cpp/fake_server.h"
 
 namespace cleave {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "cleave/v1/server.grpc.pb.h"
 #include "client/cpp/client.h"
 #include "tests/unit/temporary_directory.h"
 

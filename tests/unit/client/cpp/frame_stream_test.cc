@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/synchronization/notification.h"
+#include "cleave/v1/frame.grpc.pb.h"
 #include "core/stream/frame_encoder.h"
 #include "tests/unit/client/cpp/fake_server.h"
 

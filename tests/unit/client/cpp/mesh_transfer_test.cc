@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "cleave/v1/asset.grpc.pb.h"
 #include "core/base/crc32c.h"
 #include "core/base/sha256.h"
 #include "proto/convert/mesh.h"
