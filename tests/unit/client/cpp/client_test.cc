@@ -6,6 +6,8 @@
 #include <chrono>
 #include <set>
 
+#include "cleave/v1/impurity.grpc.pb.h"
+#include "cleave/v1/material.grpc.pb.h"
 #include "cleave/v1/session.grpc.pb.h"
 #include "tests/unit/client/cpp/fake_server.h"
 
