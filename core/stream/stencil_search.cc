@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "core/base/parallel.h"
 #include "core/stream/stencils.h"
@@ -153,6 +154,7 @@ template <typename IsVisible>
 void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
                        const IsVisible& is_visible) {
   constexpr int64_t kLanes = 4;
+  constexpr bool kInView = !std::is_same_v<IsVisible, std::remove_cvref_t<decltype(kAllVisible)>>;
   const auto rebuild_four = [&](std::span<const int32_t> some) {
     StencilBatch batch;
     for (size_t lane = 0; lane < some.size(); ++lane) {
@@ -162,7 +164,7 @@ void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
       Search(order, some[lane], nearest, is_visible);
       const size_t count = nearest.count();
       batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
-      if (visible_) {
+      if constexpr (kInView) {
         far_squares_[index] = count < kStencilNodes ? std::numeric_limits<double>::infinity()
                                                     : nearest.Square(count - 1);
       }
