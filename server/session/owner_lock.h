@@ -1,6 +1,7 @@
 #ifndef CLEAVE_SERVER_SESSION_OWNER_LOCK_H_
 #define CLEAVE_SERVER_SESSION_OWNER_LOCK_H_
 
+#include <chrono>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -13,8 +14,9 @@ namespace cleave {
 // it ends; the file stays.
 class OwnerLock {
  public:
-  // Does not wait: Unavailable, naming the owner's pid, while another process holds it.
-  static absl::StatusOr<OwnerLock> Acquire(const std::string& path);
+  // Unavailable, naming the owner's pid, where another process still holds it after `patience`.
+  static absl::StatusOr<OwnerLock> Acquire(
+      const std::string& path, std::chrono::milliseconds patience = std::chrono::milliseconds(0));
 
  private:
   explicit OwnerLock(FileDescriptor file) : file_(std::move(file)) {}

@@ -134,7 +134,9 @@ void GoDown(grpc::Server& server, SessionStore& sessions, Drain& drain) {
 
 absl::Status Serve(const GatewayOptions& options) {
   CLEAVE_RETURN_IF_ERROR(MakeDirectory(options.data));
-  CLEAVE_ASSIGN_OR_RETURN(const OwnerLock data_lock, OwnerLock::Acquire(options.data + "/owner"));
+  // The server of a run that was killed may still be ending when the run is begun again.
+  CLEAVE_ASSIGN_OR_RETURN(const OwnerLock data_lock,
+                          OwnerLock::Acquire(options.data + "/owner", std::chrono::seconds(5)));
   CLEAVE_ASSIGN_OR_RETURN(const std::optional<OwnerLock> socket_lock, LockSocket(options.listen));
 
   // These live until the process ends: gRPC's own end of things is not waited for.
