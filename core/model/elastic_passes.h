@@ -88,12 +88,18 @@ class ElasticTerm : public Shape<T>::Term {
   bool ChooseBranches(const NodalVector& displacements, BranchChoice choice) override {
     if constexpr (Fibres<T>::kPresent) {
       if (choice == BranchChoice::kAccepted) return false;  // the trial was here
-      std::atomic<bool> changed = false;
+      const bool start = choice == BranchChoice::kStart;
+      // No trial turns a fibre over.
+      if (!start && fibres_are_upright_) return false;
+      std::atomic<bool> changed = false, turned_over = false;
       ForEachBatch(tets_, [&](int64_t begin, int64_t end) {
         for (int64_t b = begin; b < end; ++b) {
+          if (!start && fibres_.AreUpright(b)) continue;
           if (fibres_.ChooseSigns(b, DeformationOf(b, displacements).g, choice)) changed = true;
+          if (!fibres_.AreUpright(b)) turned_over = true;
         }
       });
+      fibres_are_upright_ = !turned_over;
       return changed;
     }
     return false;
@@ -271,6 +277,7 @@ class ElasticTerm : public Shape<T>::Term {
   [[no_unique_address]] Fibres<T> fibres_;
   [[no_unique_address]] Shape<T> shape_;
   const bool fibres_break_;
+  bool fibres_are_upright_ = true;    // in all batches that passes keep to
   std::vector<double> chunk_energy_;  // scratch
 };
 

@@ -61,6 +61,13 @@ class FibreFamilies {
     return bytes;
   }
 
+  // Whether no fibre of a batch is turned over.
+  bool AreUpright(int64_t b) const {
+    return std::none_of(families_.begin(), families_.end(), [b](const auto& family) {
+      return Any(family[static_cast<size_t>(b)].sign < 0);
+    });
+  }
+
   // Whether that changed any sign.
   bool ChooseSigns(int64_t b, const Matrix3<T>& g, BranchChoice choice) {
     Matrix3<T> f = g;
