@@ -160,15 +160,15 @@ class ElasticTerm : public Shape<T>::Term {
       for (int64_t b = begin; b < end; ++b) {
         const TetBatch<T>& batch = tets_.batches[static_cast<size_t>(b)];
         const Deformation<T> deformation = DeformationOf(b, displacements);
+        const T scale = block_unit * batch.volume;
+        // Before the singular values: roots and quotients of both then overlap.
+        const auto of_fibres =
+            fibres_.BlocksOf(b, deformation.g, deformation.gradient, scale, curvature);
         const SignedSvd<T> svd = ComputeSvd(deformation.g);
         StiffnessSpectrum<T> spectrum = Law::Spectrum(svd, lame(b));
         if constexpr (Shape<T>::kFlows) shape_.template Relax<Law>(b, svd, stress_unit_, spectrum);
         if (curvature == Curvature::kSemidefinite) ProjectToSemidefinite(spectrum);
-        const T scale = block_unit * batch.volume;
-        SetElementBlocks(deformation.gradient, scale, svd, spectrum, element);
-        if constexpr (Fibres<T>::kPresent) {
-          fibres_.AddBlocks(b, deformation.g, deformation.gradient, scale, curvature, element);
-        }
+        SetElementBlocks(deformation.gradient, scale, svd, spectrum, of_fibres, element);
         ScatterBlocks(batch, tets_.lanes(b), element, blocks.data());
       }
     });

@@ -10,10 +10,12 @@ namespace cleave {
 
 // The element matrices of an isotropic energy: `scale` times its second derivative, by the shape
 // gradients of vertices 1 to 3. In the frame of the singular values that derivative is sparse, so
-// the blocks are built there from turned gradients and turned back. Source: method note, section 5.
-template <typename T>
+// the blocks are built there from turned gradients and turned back. `others` add theirs to the
+// block of an edge before it is stored. Source: method note, section 5.
+template <typename T, typename Others>
 void SetElementBlocks(const Matrix3<T>& shape_gradient, const T& scale, const SignedSvd<T>& svd,
-                      const StiffnessSpectrum<T>& spectrum, BatchBlocks<T>& out) {
+                      const StiffnessSpectrum<T>& spectrum, const Others& others,
+                      BatchBlocks<T>& out) {
   T gradient[4][3];  // of every vertex, in the frame of V
   for (int i = 0; i < 3; ++i) {
     for (int vertex = 1; vertex < 4; ++vertex) {
@@ -42,13 +44,15 @@ void SetElementBlocks(const Matrix3<T>& shape_gradient, const T& scale, const Si
       turned(j, i) = axial[j][i] * (a[j] * b[i]) + other[k] * (a[i] * b[j]);
     }
     const Matrix3<T> half = svd.u * turned;
+    T block[9];
     for (int column = 0; column < 3; ++column) {
       for (int row = 0; row < 3; ++row) {
-        out.block[edge][3 * column + row] = half(row, 0) * svd.u(column, 0) +
-                                            half(row, 1) * svd.u(column, 1) +
-                                            half(row, 2) * svd.u(column, 2);
+        block[3 * column + row] = half(row, 0) * svd.u(column, 0) +
+                                  half(row, 1) * svd.u(column, 1) + half(row, 2) * svd.u(column, 2);
       }
     }
+    others.AddTo(edge, block);
+    for (int k = 0; k < 9; ++k) out.block[edge][k] = block[k];
   }
 }
 

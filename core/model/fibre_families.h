@@ -8,8 +8,10 @@
 #include "core/base/lanes.h"
 #include "core/base/matrix3.h"
 #include "core/material/fibre.h"
-#include "core/model/batch_scatter.h"
+#include "core/mesh/incidence.h"
+#include "core/model/curvature.h"
 #include "core/model/elastic_term.h"
+#include "core/scene/limits.h"
 
 namespace cleave {
 
@@ -21,12 +23,40 @@ struct FibreBatch {
   T sign;          // the branch of the energy
 };
 
+// What fibres add to the blocks of a batch (element_blocks.h).
+template <typename T>
+struct FibreBlocks {
+  struct Family {
+    T by_entry[9];   // column by column
+    T stretched[4];  // how far a unit displacement of each vertex stretches the fibre
+  };
+  Family families[limits::kMaxFibreFamilies];
+  int count = 0;
+
+  void AddTo(size_t edge, T* block) const {
+    for (int family = 0; family < count; ++family) {
+      const T* stretched = families[family].stretched;
+      const T weight = stretched[kTetEdges[edge][0]] * stretched[kTetEdges[edge][1]];
+      for (int k = 0; k < 9; ++k) block[k] += weight * families[family].by_entry[k];
+    }
+  }
+};
+
+struct NoBlocks {
+  template <typename T>
+  void AddTo(size_t /*edge*/, T* /*block*/) const {}
+};
+
 // What an elastic term has where its tets have no fibres.
 template <typename T>
 struct NoFibres {
   static constexpr bool kPresent = false;
   NoFibres(const std::vector<FibreFamilyPart>&, int64_t /*batch_count*/, double /*stress_unit*/) {}
   int64_t bytes() const { return 0; }
+  NoBlocks BlocksOf(int64_t /*b*/, const Matrix3<T>& /*g*/, const Matrix3<T>& /*gradient*/,
+                    const T& /*scale*/, Curvature /*curvature*/) const {
+    return {};
+  }
 };
 
 // The families of fibres in the tets of an elastic term. Batches are given by their index and by
@@ -106,9 +136,10 @@ class FibreFamilies {
     return energy;
   }
 
-  // Adds `scale` times the second derivative to `out`.
-  void AddBlocks(int64_t b, const Matrix3<T>& g, const Matrix3<T>& gradient, const T& scale,
-                 Curvature curvature, BatchBlocks<T>& out) const {
+  // `scale` times the second derivative.
+  FibreBlocks<T> BlocksOf(int64_t b, const Matrix3<T>& g, const Matrix3<T>& gradient,
+                          const T& scale, Curvature curvature) const {
+    FibreBlocks<T> blocks;
     for (const auto& family : families_) {
       const FibreBatch<T>& fibres = family[static_cast<size_t>(b)];
       const FibreStretch<T> stretch = StretchOf(fibres, g);
@@ -116,26 +147,23 @@ class FibreFamilies {
       if (curvature == Curvature::kSemidefinite) across = Max(across, T{});
       const T* d = stretch.direction;
       const T stiffness = -scale * fibres.stiffness;
-      T by_entry[9];
+      auto& of_family = blocks.families[blocks.count++];
       for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) {
           const T along = (1.0 - across) * d[row] * d[column];
-          by_entry[3 * column + row] = stiffness * (row == column ? along + across : along);
+          of_family.by_entry[3 * column + row] =
+              stiffness * (row == column ? along + across : along);
         }
       }
-      // How far a unit displacement of each vertex stretches the fibre.
-      T stretched[4];
+      T* stretched = of_family.stretched;
       for (int vertex = 1; vertex < 4; ++vertex) {
         stretched[vertex] = gradient(vertex - 1, 0) * fibres.direction[0] +
                             gradient(vertex - 1, 1) * fibres.direction[1] +
                             gradient(vertex - 1, 2) * fibres.direction[2];
       }
       stretched[0] = -(stretched[1] + stretched[2] + stretched[3]);
-      for (size_t edge = 0; edge < 6; ++edge) {
-        const T weight = stretched[kTetEdges[edge][0]] * stretched[kTetEdges[edge][1]];
-        for (int k = 0; k < 9; ++k) out.block[edge][k] += weight * by_entry[k];
-      }
     }
+    return blocks;
   }
 
   // As TetTerm::AddRestModuli, for the tet in a lane of a batch.

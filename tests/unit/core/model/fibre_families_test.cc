@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -16,14 +17,15 @@ constexpr double kStiffness = 3000;  // Pa, of fibres
 class FibreFamiliesTest : public ::testing::TestWithParam<Precision> {
  protected:
   // With a family of fibres along each of these unit directions.
-  std::unique_ptr<TetTerm> TermWith(const std::vector<Vec3>& directions) const {
+  std::unique_ptr<TetTerm> TermWith(Precision precision,
+                                    const std::vector<Vec3>& directions) const {
     const auto tets = static_cast<size_t>(mesh_.tet_count());
     ElasticPart part{.lame = {ToLame(1000, 0.3)}};
     for (const Vec3& direction : directions) {
       part.fibres.push_back(
           {std::vector<Vec3>(tets, direction), std::vector<double>(tets, kStiffness)});
     }
-    return MakeElasticTerm(GetParam(), mesh_, incidence_, part, FractureStress::kTotal);
+    return MakeElasticTerm(precision, mesh_, incidence_, part, FractureStress::kTotal);
   }
   NodalVector Stretched(const Eigen::Vector3d& stretches) const {
     NodalVector displacements;
@@ -33,9 +35,16 @@ class FibreFamiliesTest : public ::testing::TestWithParam<Precision> {
     }
     return displacements;
   }
+  Eigen::VectorXd Forces(TetTerm& term, const NodalVector& displacements) const {
+    NodalVector forces(displacements.size(), Splat(0));
+    term.AddForces(displacements, forces);
+    Eigen::VectorXd flat(static_cast<int>(3 * forces.size()));
+    for (int i = 0; i < flat.size(); ++i) flat[i] = forces[static_cast<size_t>(i / 3)][i % 3];
+    return flat;
+  }
   // What fibres along x have of the energy, J.
   double FibreEnergy(TetTerm& term, const NodalVector& displacements) const {
-    const std::unique_ptr<TetTerm> plain = TermWith({});
+    const std::unique_ptr<TetTerm> plain = TermWith(GetParam(), {});
     NodalVector forces(displacements.size(), Splat(0));
     return term.AddForces(displacements, forces) - plain->AddForces(displacements, forces);
   }
@@ -52,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Precisions, FibreFamiliesTest,
                          ::testing::Values(Precision::kDouble, Precision::kFloat));
 
 TEST_P(FibreFamiliesTest, FibresTurnOverAtTheStartOfAStepOnlyAndBackAtATrial) {
-  const std::unique_ptr<TetTerm> term = TermWith({{1, 0, 0}});
+  const std::unique_ptr<TetTerm> term = TermWith(GetParam(), {{1, 0, 0}});
   const NodalVector upright = Stretched({1.25, 1, 1}), inverted = Stretched({-0.75, 1, 1});
   for (int step = 0; step < 2; ++step) {
     EXPECT_FALSE(term->ChooseBranches(upright, BranchChoice::kStart));
@@ -72,7 +81,7 @@ TEST_P(FibreFamiliesTest, FibresTurnOverAtTheStartOfAStepOnlyAndBackAtATrial) {
 }
 
 TEST_P(FibreFamiliesTest, ATrialTurnsBackFibresOfTetsThatWereLeftOut) {
-  const std::unique_ptr<TetTerm> term = TermWith({{1, 0, 0}});
+  const std::unique_ptr<TetTerm> term = TermWith(GetParam(), {{1, 0, 0}});
   const NodalVector upright = Stretched({1.25, 1, 1}), inverted = Stretched({-0.75, 1, 1});
   std::vector<uint8_t> asleep(static_cast<size_t>(mesh_.tet_count()), 1);
   term->LeaveOut(asleep, upright);
@@ -80,6 +89,40 @@ TEST_P(FibreFamiliesTest, ATrialTurnsBackFibresOfTetsThatWereLeftOut) {
   term->LeaveOut({}, inverted);
   EXPECT_TRUE(term->ChooseBranches(upright, BranchChoice::kTrial));
   EXPECT_NEAR(FibreEnergy(*term, upright), EnergyAt(0.25), kRounding);
+}
+
+TEST_P(FibreFamiliesTest, ExactStiffnessIsTheForcesDerivative) {
+  const std::vector<Vec3> directions = {{1, 0, 0}, {0.6, 0.8, 0}, {0, 0.6, -0.8}};
+  const std::unique_ptr<TetTerm> term = TermWith(GetParam(), directions);
+  // Differences of what float has rounded say little.
+  const std::unique_ptr<TetTerm> in_double = TermWith(Precision::kDouble, directions);
+  NodalVector displacements;
+  for (const Vec3& x : mesh_.rest_positions) {
+    displacements.push_back(Double4{0.2 * std::sin(5 * x[1] + 3 * x[2]),
+                                    0.2 * std::cos(7 * x[0] * x[2]), 0.1 * (x[0] * x[0] - 2 * x[1]),
+                                    0});
+  }
+  EdgeBlocks blocks(EdgeBlocksSize(incidence_.edge_count()), 0.0f);
+  term->AddStiffness(displacements, Curvature::kExact, blocks);
+  const auto size = static_cast<int>(3 * mesh_.node_count());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  for (size_t edge = 0; edge < incidence_.edges.size(); ++edge) {
+    const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
+    const Eigen::Matrix3d block =
+        Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
+    stiffness.block<3, 3>(i, j) -= block;
+    stiffness.block<3, 3>(j, i) -= block.transpose();
+    stiffness.block<3, 3>(i, i) += block;
+    stiffness.block<3, 3>(j, j) += block.transpose();
+  }
+  const double h = 1e-5;
+  for (int i = 0; i < size; ++i) {
+    NodalVector up = displacements, down = displacements;
+    up[static_cast<size_t>(i / 3)][i % 3] += h;
+    down[static_cast<size_t>(i / 3)][i % 3] -= h;
+    const Eigen::VectorXd column = -(Forces(*in_double, up) - Forces(*in_double, down)) / (2 * h);
+    EXPECT_NEAR((column - stiffness.col(i)).norm(), 0, 3e-6 * stiffness.norm()) << i;
+  }
 }
 
 }  // namespace
