@@ -132,6 +132,29 @@ int64_t CrackOpenTo(std::span<const Frame> frames, double share) {
   return -1;
 }
 
+std::vector<double> PartedShares(const TetMesh& mesh, const Incidence& incidence,
+                                 std::span<const Frame> frames) {
+  if (frames.empty()) return {};
+  const Pieces pieces = PiecesOf(mesh, incidence, frames.back().broken_edges);
+  const auto between_pieces = [&](int32_t edge) {
+    const auto& [a, b] = incidence.edges[static_cast<size_t>(edge)];
+    const int32_t piece = pieces.node_pieces[static_cast<size_t>(a)];
+    const int32_t other = pieces.node_pieces[static_cast<size_t>(b)];
+    return piece >= 0 && other >= 0 && piece != other;
+  };
+  std::vector<double> shares;
+  for (const Frame& frame : frames) {
+    const std::vector<int32_t>& broken = frame.broken_edges;
+    shares.push_back(
+        static_cast<double>(std::count_if(broken.begin(), broken.end(), between_pieces)));
+  }
+  // Edges never mend, and in the last frame all that are between pieces are broken.
+  const double all = shares.back();
+  if (all == 0) return {};
+  for (double& share : shares) share /= all;
+  return shares;
+}
+
 double EdgeStretch(const TetMesh& mesh, const Incidence& incidence, const Frame& frame,
                    int32_t edge) {
   const auto& [a, b] = incidence.edges[static_cast<size_t>(edge)];

@@ -55,6 +55,12 @@ int64_t Separation(const TetMesh& mesh, const Incidence& incidence, std::span<co
 // First frame with at least `share` of the edges that are broken in the last one.
 int64_t CrackOpenTo(std::span<const Frame> frames, double share);
 
+// Of the edges between pieces of the last frame, the share that is broken: how far the body has
+// come apart, a frame each. What breaks elsewhere opens cracks that end within a piece; a body can
+// be full of those before it begins to come apart. Empty where the last frame has no two pieces.
+std::vector<double> PartedShares(const TetMesh& mesh, const Incidence& incidence,
+                                 std::span<const Frame> frames);
+
 // Distance over rest length of an edge.
 double EdgeStretch(const TetMesh& mesh, const Incidence& incidence, const Frame& frame,
                    int32_t edge);

@@ -1,8 +1,10 @@
 #include "tests/scenes/steak.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <vector>
 
 #include "core/base/status.h"
 #include "tests/metrics/pieces.h"
@@ -42,6 +44,24 @@ bool InFat(const Vec3& x) {
     if (along * along + across * across <= 1) return true;
   }
   return false;
+}
+
+// Strands across the tear of the last frame: edges that hold there, drawn long, along the fibres.
+double StrandCount(const TetMesh& mesh, const Incidence& incidence, const Frame& frame,
+                   const Frame& last) {
+  double count = 0;
+  for (const int32_t edge : BridgingEdges(incidence, frame, last)) {
+    if (EdgeStretch(mesh, incidence, frame, edge) < 1.3) continue;
+    const auto& [a, b] = incidence.edges[static_cast<size_t>(edge)];
+    const Vec3& p = mesh.rest_positions[static_cast<size_t>(a)];
+    const Vec3& q = mesh.rest_positions[static_cast<size_t>(b)];
+    const Vec3 fibre = FibreAt({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
+    const double length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+    const double along =
+        ((p[0] - q[0]) * fibre[0] + (p[1] - q[1]) * fibre[1] + (p[2] - q[2]) * fibre[2]) / length;
+    count += std::abs(along) >= 0.8 ? 1 : 0;
+  }
+  return count;
 }
 
 }  // namespace
@@ -108,24 +128,19 @@ Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incide
   Metrics metrics;
   const TetMesh& mesh = demonstration.mesh;
   metrics["smallest_hold"] = SmallestHold(mesh, incidence, run.frames);
-  double bridging = 0;
-  const int64_t half = CrackOpenTo(run.frames, 0.5);
-  if (half >= 0) {
-    const Frame& frame = run.frames[static_cast<size_t>(half)];
-    for (const int32_t edge : BridgingEdges(incidence, frame, run.frames.back())) {
-      if (EdgeStretch(mesh, incidence, frame, edge) < 1.3) continue;
-      const auto& [a, b] = incidence.edges[static_cast<size_t>(edge)];
-      const Vec3& p = mesh.rest_positions[static_cast<size_t>(a)];
-      const Vec3& q = mesh.rest_positions[static_cast<size_t>(b)];
-      const Vec3 fibre = FibreAt({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
-      const double length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-      const double along =
-          ((p[0] - q[0]) * fibre[0] + (p[1] - q[1]) * fibre[1] + (p[2] - q[2]) * fibre[2]) / length;
-      bridging += std::abs(along) >= 0.8 ? 1 : 0;
-    }
-  }
+  metrics["half_open"] = -1;
+  metrics["bridging"] = 0;
+  const std::vector<double> parted = PartedShares(mesh, incidence, run.frames);
+  if (parted.empty()) return metrics;
+  // At rest nothing is broken, at the end all: there is a frame before the one that is past half.
+  const auto past = std::lower_bound(parted.begin(), parted.end(), 0.5);
+  const auto half = static_cast<size_t>(past - parted.begin());
+  const auto strands = [&](size_t frame) {
+    return StrandCount(mesh, incidence, run.frames[frame], run.frames.back());
+  };
   metrics["half_open"] = static_cast<double>(half);
-  metrics["bridging"] = bridging;
+  metrics["bridging"] = std::lerp(strands(half - 1), strands(half),
+                                  (0.5 - parted[half - 1]) / (parted[half] - parted[half - 1]));
   return metrics;
 }
 

@@ -12,9 +12,10 @@ namespace cleave {
 // without fibres; "turned", fibres along y.
 absl::StatusOr<Demonstration> MakeSteak(const Setting& setting);
 
-// bridging: strands across the tear when half of it is open: edges stretched 1.3 times and more,
-// within |cos| 0.8 of the fibres. smallest_hold: the least of its boundary by which a piece
-// dangled.
+// bridging: strands across the tear when half of the edges between its pieces are broken: edges
+// stretched 1.3 times and more, within |cos| 0.8 of the fibres. A tear runs through much of the
+// meat within a frame or two: the count is interpolated between the frame before half and
+// half_open, the first past it. smallest_hold: the least of its boundary by which a piece dangled.
 Metrics MeasureSteak(const Demonstration& demonstration, const Incidence& incidence,
                      const Run& run);
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "tests/unit/core/mesh/kuhn_mesh.h"
@@ -102,6 +104,32 @@ TEST_F(PiecesTest, FractureAndSeparationHaveTheirFrames) {
   EXPECT_EQ(CrackOpenTo(frames, 0.5), 2);
   EXPECT_EQ(CrackOpenTo(frames, 1), 3);
   EXPECT_EQ(CrackOpenTo({}, 0.5), -1);
+}
+
+// By all that breaks, notches that end within the pieces had a body half torn where it was still
+// whole: what then crossed the tear to come was no strands.
+TEST_F(PiecesTest, ABodyHasComeApartByWhatIsBrokenBetweenItsPieces) {
+  const std::vector<int32_t> cut = Cut(2.5);
+  std::vector<int32_t> notches;
+  for (const double x : {0.5, 1.5, 3.5, 4.5}) {
+    const std::vector<int32_t> through = Cut(x);
+    notches.insert(notches.end(), through.begin(), through.end() - 3);
+  }
+  ASSERT_GT(notches.size(), cut.size());
+  const auto notched = [&](size_t torn) {
+    std::vector<int32_t> edges = notches;
+    edges.insert(edges.end(), cut.begin(), cut.begin() + static_cast<int64_t>(torn));
+    std::sort(edges.begin(), edges.end());
+    return At(1, edges);
+  };
+  const std::vector<Frame> frames = {At(1, {}), notched(0), notched(1), notched(cut.size())};
+  ASSERT_EQ(PiecesOf(mesh_, incidence_, frames.back().broken_edges).count, 2);
+  EXPECT_EQ(CrackOpenTo(frames, 0.5), 1);
+  EXPECT_EQ(PartedShares(mesh_, incidence_, frames),
+            (std::vector<double>{0, 0, 1.0 / static_cast<double>(cut.size()), 1}));
+  const std::span<const Frame> whole(frames.data(), 3);
+  EXPECT_TRUE(PartedShares(mesh_, incidence_, whole).empty());
+  EXPECT_TRUE(PartedShares(mesh_, incidence_, {}).empty());
 }
 
 TEST_F(PiecesTest, StretchIsTakenBeforeAnEdgeBreaks) {
