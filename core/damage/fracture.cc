@@ -15,6 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int64_t kBlock = 4096;  // edges or tets, the unit of ordered maxima
+// What rounding may add to the square of an edge's stress over that of its tets.
+constexpr double kRoundedUp = 1 + 1e-12;
 
 Vector3d At(std::span<const Vec3> positions, int32_t node) {
   return Vector3d(positions[static_cast<size_t>(node)].data());
@@ -43,6 +45,7 @@ EdgeFracture::EdgeFracture(const TetMesh& mesh, const Incidence& incidence,
   masks_.assign(tets, 0);
   factors_.assign(tets, 1.0);
   loads_.assign(tets, kNone);
+  squared_bounds_.assign(tets, 0.0);
   ratios_.assign(edges, 0.0);
   min_threshold_ = kUnbreakable;
   for (int32_t edge = 0; edge < static_cast<int32_t>(edges); ++edge) {
@@ -164,6 +167,7 @@ double EdgeFracture::WeighTets(std::span<const Vec3> positions, Stress effective
         if (!(SixVolumes(mesh_.tets[t], positions) > 0)) continue;
         const double squared = effective_stress[t].squaredNorm();
         loads_[t] = squared >= hot_squared ? kHot : kUpright;
+        squared_bounds_[t] = squared * kRoundedUp;
         max_squared = std::max(max_squared, squared);
       }
       block_max_[static_cast<size_t>(block)] = {max_squared, 0};
@@ -231,12 +235,15 @@ double EdgeFracture::RatioOf(int32_t edge, std::span<const Vec3> positions,
   if (broken_[static_cast<size_t>(edge)] != 0) return 0;
   const double left = strengths_.kappa[edge] * strengths_.residual[edge];
   if (left == 0) return kUnbreakable;  // its life is over: the worst ratio there is
-  // Neither the mean nor the largest exceeds every tet's.
+  // Neither the mean nor the largest exceeds every tet's. Strengths may differ widely, as along and
+  // across fibres: most edges are far from their own while some are near.
+  const double weakest = Weakest(edge);
   const std::span<const int32_t> tets = incidence_.edge_tets[edge];
-  const bool hot = std::any_of(tets.begin(), tets.end(), [&](int32_t tet) {
-    return loads_[static_cast<size_t>(tet)] == kHot;
+  const bool may_fail = std::any_of(tets.begin(), tets.end(), [&](int32_t tet) {
+    const auto t = static_cast<size_t>(tet);
+    return loads_[t] == kHot && (kPlastic || squared_bounds_[t] >= weakest * weakest);
   });
-  if (!hot) return 0;
+  if (!may_fail) return 0;
   const EdgeLoad load = LoadOf<kPlastic>(edge, positions, effective_stress);
   double ratio = 0;
   if (load.tension > 0) ratio = load.tension / (strengths_.tensile[edge] * left);

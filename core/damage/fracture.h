@@ -59,8 +59,8 @@ struct ChangedTet {
 // What one break pass did. The spans stay valid until the next call on the same EdgeFracture.
 struct PassResult {
   // Largest failure ratio over live edges, all edges unbroken so far. Below 1 nothing broke, and it
-  // is then the largest of those at a tet whose stress reached the smallest threshold; an upper
-  // bound where there is no such tet.
+  // is then that of the edges whose strength the stress of a tet of theirs reached, 0 where there
+  // is none; an upper bound where no tet's stress reached the smallest strength.
   double max_ratio = 0;
   int32_t max_edge = -1;  // an edge of that ratio, the lowest id; -1 when only the bound is known
   std::span<const int32_t> broken_edges;     // newly broken, ascending, orphans included
@@ -169,7 +169,8 @@ class EdgeFracture {
   double Weakest(int32_t edge) const;
   // Lowers the bounds of strengths to those of an edge.
   void LowerBounds(int32_t edge);
-  // Sets `loads_`; returns the largest Frobenius norm of an upright tet's stress.
+  // Sets `loads_` and `squared_bounds_`; returns the largest Frobenius norm of an upright tet's
+  // stress.
   double WeighTets(std::span<const Vec3> positions, Stress effective_stress);
   // Makes ductile tets hot that may fail by strain; returns the largest exhaustion of a live one.
   double WeighStrains();
@@ -220,6 +221,8 @@ class EdgeFracture {
   // Scratch of a pass.
   const PlasticTets* plastic_ = nullptr;
   std::vector<TetLoad> loads_;  // a tet each; kOut stays
+  // Pa^2, a tet each, of upright ones: no edge's stress in it has a larger square.
+  std::vector<double> squared_bounds_;
   std::vector<double> ratios_;  // an edge each
   struct BlockMax {
     double value;

@@ -147,7 +147,7 @@ Footprint PlanModel(const Scene& scene, int64_t nodes, int64_t tets, int64_t edg
     add("fracture",
         (uniform && !directional && !WeakensEdges(scene) ? 1 : edges) * kDouble +
             edges * kInt +                                                       // thresholds, ids
-            tets * (2 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
+            tets * (3 * kDouble + 1 + static_cast<int64_t>(sizeof(EdgeMask))) +  // damage
             edges * (1 + kDouble) + nodes * kInt +                               // edges, pieces
             NamedPieces::BytesOf(nodes, edges) + nodes * kVec3 +
             tets * static_cast<int64_t>(sizeof(Eigen::Matrix3d)));  // stresses

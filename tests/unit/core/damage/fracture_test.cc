@@ -15,8 +15,10 @@
 namespace cleave {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -175,6 +177,44 @@ TEST_F(ReferenceTet, BreaksOnlyWhatIsNearTheWorstRatio) {
   const PassResult third = fracture.BreakPass(kPositions, kStress);
   EXPECT_THAT(third.broken_edges, IsEmpty());
   EXPECT_LT(third.max_ratio, 1);
+}
+
+TEST_F(ReferenceTet, AnEdgeFailsAtItsOwnThresholdWhereOthersAreLower) {
+  // A stress along the edge alone is all that the tet has: its norm is the edge's stress, but for
+  // rounding.
+  for (uint64_t sample = 0; sample < 1000; ++sample) {
+    uint64_t draw = 0;
+    const auto random = [&] {
+      return UniformDraw(5, RandomStream::kMeshJitter, sample, draw++) - 0.5;
+    };
+    std::vector<Vec3> positions = mesh_.rest_positions;
+    for (Vec3& x : positions) {
+      for (double& coordinate : x) coordinate += 0.2 * random();
+    }
+    const auto direction = [](const std::vector<Vec3>& x) {
+      return (Eigen::Vector3d(x[1].data()) - Eigen::Vector3d(x[0].data())).normalized();
+    };
+    const std::vector<Eigen::Matrix3d> stress = {(100 + random()) * direction(positions) *
+                                                 direction(mesh_.rest_positions).transpose()};
+    std::vector<double> stresses(6);
+    thresholds_.fill(kInfinite);
+    Fracture().EdgeStresses(positions, stress, nullptr, stresses);
+    thresholds_[0] = stresses[0];
+    thresholds_[5] = 50;  // far from the edge, and the lowest
+    EXPECT_THAT(Fracture().BreakPass(positions, stress).broken_edges, Contains(0)) << sample;
+    thresholds_[0] = std::nextafter(stresses[0], kInfinite);
+    const PassResult result = Fracture().BreakPass(positions, stress);
+    EXPECT_THAT(result.broken_edges, Not(Contains(0))) << sample;
+  }
+}
+
+TEST_F(ReferenceTet, RatiosBelowOneAreThoseOfEdgesWhoseStrengthATetsStressReached) {
+  const double norm = kStress[0].norm();
+  thresholds_.fill(2 * norm);
+  thresholds_[2] = 0.999 * norm;
+  const PassResult near = Fracture().BreakPass(kPositions, kStress);
+  EXPECT_EQ(near.max_edge, 2);
+  EXPECT_NEAR(near.max_ratio, kEdgeStress[2] / thresholds_[2], 1e-12);
 }
 
 TEST_F(ReferenceTet, BelowEveryThresholdReportsABound) {
