@@ -1,8 +1,9 @@
 // Prints what a step costs and where the time goes: what fibres, impurities and precision cost
-// against the plain body, the column of the method's paper, pieces asleep against awake, surfaces
-// that are followed against those taken anew, and boxes of growing size that are pulled until they
-// break. `cleave_bench ratios`, `cleave_bench column`, `cleave_bench sleep`, `cleave_bench surface`
-// and `cleave_bench [tets...]` print one of the tables.
+// against the plain body, what fibres cost a slab that tears, the column of the method's paper,
+// pieces asleep against awake, surfaces that are followed against those taken anew, and boxes of
+// growing size that are pulled until they break. `cleave_bench ratios`, `cleave_bench slab`,
+// `cleave_bench column`, `cleave_bench sleep`, `cleave_bench surface` and `cleave_bench [tets...]`
+// print one of the tables.
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -168,6 +169,7 @@ absl::Status PrintGrowth(const std::vector<double>& sizes) {
 absl::Status Run(const std::vector<std::string>& arguments) {
   const std::string table = arguments.empty() ? "" : arguments[0];
   if (table == "ratios") return PrintRatios();
+  if (table == "slab") return PrintSlab();
   if (table == "column") return PrintColumn();
   if (table == "sleep") return PrintSleep();
   if (table == "surface") return PrintSurface();
@@ -175,6 +177,7 @@ absl::Status Run(const std::vector<std::string>& arguments) {
   for (const std::string& size : arguments) sizes.push_back(std::atof(size.c_str()));
   if (!sizes.empty()) return PrintGrowth(sizes);
   CLEAVE_RETURN_IF_ERROR(PrintRatios());
+  CLEAVE_RETURN_IF_ERROR(PrintSlab());
   CLEAVE_RETURN_IF_ERROR(PrintColumn());
   CLEAVE_RETURN_IF_ERROR(PrintSleep());
   CLEAVE_RETURN_IF_ERROR(PrintSurface());

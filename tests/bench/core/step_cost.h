@@ -37,6 +37,8 @@ absl::StatusOr<std::vector<StepCost>> MeasureSteps(const TetMesh& mesh,
 
 // Prints a table of what steps cost as shares of the first case.
 absl::Status PrintRatios();
+// Prints what solves of a slab that tears take with fibres and without (tests/scenes/slab_trio.h).
+absl::Status PrintSlab();
 // Prints steps of blocks that rest, asleep against awake.
 absl::Status PrintSleep();
 // Prints what the surface and the pieces cost while a bar is cut, followed and found anew.
