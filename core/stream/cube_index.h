@@ -67,14 +67,14 @@ inline CubesAround::CubesAround(uint64_t code, int bits) {
 }
 
 // Which places are in each cube of a grid: a hash table of the blocks of 2 x 2 x 2 cubes that have
-// room for some.
+// some.
 class CubeIndex {
  public:
   CubeIndex() = default;
-  // Room for these places, which are sorted by Morton code, in cubes that are 2^bits Morton steps
-  // wide. All are in it. Precondition: at most 65,535 in a cube; places coarser than a group
-  // (NodeOrder) are at most 256, as 3 * bits is below the group's top level + 9 and no two of them
-  // are one from there on.
+  // Of these places, which are sorted by Morton code, in cubes that are 2^bits Morton steps
+  // wide. Precondition: at most 65,535 in a cube; places coarser than a group (NodeOrder) are at
+  // most 4096, as 3 * bits is below the group's top level + 12 and no two of them are one from
+  // there on.
   CubeIndex(std::span<const NodeOrder::Coarse> places, int bits) : bits_(bits) {
     const auto block_of = [&](size_t at) { return places[at].code >> (3 * bits) >> 3; };
     size_t blocks = 0;
@@ -94,20 +94,6 @@ class CubeIndex {
     }
   }
 
-  // Takes all places out; one that there is room for is in again.
-  void Clear() {
-    for (Slot& slot : slots_) slot.counts = {};
-  }
-  void Add(uint64_t code, int32_t place) {
-    const uint64_t cube = code >> (3 * bits_);
-    Slot& slot = slots_[Find(cube >> 3)];
-    places_[static_cast<size_t>(slot.begins[cube & 7] + slot.counts[cube & 7]++)] = place;
-  }
-
-  // Fetches what Add will need.
-  void PrefetchOf(uint64_t code) const { Prefetch(code >> (3 * bits_) >> 3); }
-
-  bool empty() const { return places_.empty(); }  // of room
   int bits() const { return bits_; }
   // Fetches what ForCubes will read.
   void Prefetch(uint64_t block) const { __builtin_prefetch(slots_.data() + Start(block)); }
@@ -142,37 +128,6 @@ class CubeIndex {
   LargeVector<Slot> slots_;      // a power of two, at most half of them taken
   std::vector<int32_t> places_;  // those of a cube one after the other
   int shift_ = 63;
-};
-
-// A set of cubes of a grid: a hash table of blocks of 4 x 4 x 4 cubes, a bit for each. The six
-// lowest bits of a cube's Morton code are its position in the block.
-class CubeSet {
- public:
-  // Makes it empty. Of cubes that are 2^bits Morton steps wide.
-  void Clear(int bits);
-  void Add(uint64_t cube) { Block(cube >> 6) |= uint64_t{1} << (cube & 63); }
-  // Adds the cubes that touch any of the set.
-  void Widen();
-  bool Has(uint64_t cube) const { return (slots_[Find(cube >> 6)].cubes >> (cube & 63) & 1) != 0; }
-
- private:
-  struct Slot {
-    uint64_t block = ~uint64_t{0};
-    uint64_t cubes = 0;  // 0: the slot is free
-  };
-
-  uint64_t& Block(uint64_t block);
-  size_t Find(uint64_t block) const {
-    size_t at = (block * 0x9E3779B97F4A7C15u) >> shift_;
-    while (slots_[at].cubes != 0 && slots_[at].block != block) at = (at + 1) % slots_.size();
-    return at;
-  }
-
-  std::vector<Slot> slots_ = std::vector<Slot>(2);  // a power of two, at most half of them taken
-  int shift_ = 63;
-  size_t count_ = 0;
-  uint64_t inside_ = 0;  // the bits that Morton codes of blocks have
-  std::vector<Slot> scratch_;
 };
 
 }  // namespace cleave

@@ -52,6 +52,16 @@ std::array<int32_t, 2> EdgeGraph::Ends(int32_t edge) const {
           PlaceOf(slots_[static_cast<size_t>(slots[1])])};
 }
 
+LargeVector<int32_t> EdgeGraph::EdgesOfSlots() const {
+  LargeVector<int32_t> edges(slots_.size());
+  for (size_t edge = 0; edge < edge_slots_.size(); ++edge) {
+    for (const int32_t slot : edge_slots_[edge]) {
+      edges[static_cast<size_t>(slot)] = static_cast<int32_t>(edge);
+    }
+  }
+  return edges;
+}
+
 void EdgeGraph::Break(int32_t edge) {
   for (const int32_t at : edge_slots_[static_cast<size_t>(edge)]) {
     int32_t& slot = slots_[static_cast<size_t>(at)];

@@ -2,6 +2,7 @@
 #define CLEAVE_CORE_STREAM_EDGE_GRAPH_H_
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,12 @@ class EdgeGraph {
     const auto end = static_cast<size_t>(offsets_[static_cast<size_t>(place) + 1]);
     return {slots_.data() + begin, end - begin};
   }
+  // Where the first of them is in EdgesOfSlots.
+  size_t SlotOf(int32_t place) const {
+    return static_cast<size_t>(offsets_[static_cast<size_t>(place)]);
+  }
+  // The edges to all of them, of all places.
+  LargeVector<int32_t> EdgesOfSlots() const;
   // Fetches the first of them.
   void Prefetch(int32_t place) const {
     __builtin_prefetch(slots_.data() + offsets_[static_cast<size_t>(place)]);
@@ -44,6 +51,7 @@ class EdgeGraph {
   void Heal();  // every edge
 
   int32_t places() const { return static_cast<int32_t>(offsets_.size()) - 1; }
+  int32_t edges() const { return static_cast<int32_t>(edge_slots_.size()); }
 
  private:
   std::vector<int32_t> offsets_;

@@ -32,7 +32,6 @@ class Nearest {
 
   size_t count() const { return count_; }
   int32_t operator[](size_t at) const { return places_[at]; }
-  double Square(size_t at) const { return squares_[at]; }  // of its distance
 
  private:
   static constexpr size_t kRoom = 256;

@@ -37,15 +37,18 @@ SymbolRange RangeOf(const std::array<uint16_t, kSymbols>& frequencies, size_t sy
 
 PieceLabels::PieceLabels(const NodeOrder& order, const Stencils& unbroken,
                          std::span<const std::array<int32_t, 2>> edges) {
-  if (unbroken.visible()) {
-    *this = PieceLabels(order, Stencils(order, unbroken.rest_positions(), edges), edges);
-    return;
-  }
   const size_t count = order.nodes.size();
   const std::vector<int32_t> places = order.PlacesOfNodes();
   stencils_.resize(count);
   for (size_t place = 0; place < count; ++place) {
-    stencils_[place] = unbroken[static_cast<int32_t>(place)].places;
+    std::array<int32_t, kStencilNodes>& stencil = stencils_[place];
+    if (unbroken.near() == nullptr) {
+      stencil = unbroken[static_cast<int32_t>(place)].places;
+      continue;
+    }
+    const auto near = unbroken.near()->Of(static_cast<int32_t>(place));
+    stencil.fill(near.empty() ? -1 : near[0].place);
+    for (size_t k = 0; k < std::min(near.size(), kStencilNodes); ++k) stencil[k] = near[k].place;
   }
   edges_.reserve(edges.size());
   for (const auto& [a, b] : edges) {

@@ -19,8 +19,8 @@ namespace cleave {
 // on the current TBB arena.
 class PieceLabels {
  public:
-  // `unbroken` are the stencils of a body of which no edge is broken. Also in a surface view all
-  // places have labels.
+  // `unbroken` are the stencils of a body of which no edge is broken, in a surface view their near
+  // places: also there all places have labels.
   PieceLabels(const NodeOrder& order, const Stencils& unbroken,
               std::span<const std::array<int32_t, 2>> edges);
 

@@ -1,18 +1,19 @@
-// How Stencils finds the places of a stencil.
+// How Stencils of the state view finds the places of a stencil.
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <type_traits>
+#include <cstring>
 
+#include "core/base/lanes.h"
 #include "core/base/parallel.h"
 #include "core/stream/stencils.h"
 
 namespace cleave {
 namespace {
 
+constexpr int64_t kAhead = 8;              // how far ahead that is fetched which will be read
 constexpr size_t kEnoughNear = 7;          // places over one edge that make a search stop
 constexpr size_t kEnough = kStencilNodes;  // places that make it stop farther out
 
@@ -46,26 +47,104 @@ class Candidates {
   std::array<int32_t, 256> places_;
 };
 
-// In the state view.
-constexpr auto kAllVisible = [](int32_t) { return true; };
+bool ContainsAny(const Stencil& stencil, std::span<const int32_t> places) {
+  Int32x8 of_stencil;
+  std::memcpy(&of_stencil, stencil.places.data(), sizeof(of_stencil));
+  Int32x8 found{};
+  for (const int32_t place : places) found |= of_stencil == place;
+  return Any(found);
+}
 
 }  // namespace
 
+Stencils::Search Stencils::MakeSearch(const NodeOrder& order) const {
+  Search search;
+  search.cubes.resize(static_cast<size_t>(order.groups()));
+  for (size_t group = 1; group < search.cubes.size(); ++group) {
+    for (size_t size = 0; size < kCubeSizes; ++size) {
+      const int bits = order.cube_bits[group] + static_cast<int>(size);
+      if (bits <= kMortonBits) search.cubes[group][size] = CubeIndex(order.coarser[group], bits);
+    }
+  }
+  search.reaches.resize(rest_.size());
+  return search;
+}
+
+void Stencils::TouchAround(std::span<const int32_t> ends) {
+  ParallelFor(static_cast<int64_t>(ends.size()), 64, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) {
+      if (at + kAhead < end) graph_.Prefetch(ends[static_cast<size_t>(at + kAhead)]);
+      TouchAround(ends[static_cast<size_t>(at)]);
+    }
+  });
+}
+
+// Breaks only take places out of a search's reach. So a stencil stays as it is while all of its
+// places remain in reach, and only those that may have lost one are made anew: here those that were
+// found over an edge that `near` lost, or over one of its edges and then that.
+void Stencils::TouchAround(int32_t near) {
+  const auto touch = [&](std::span<const int32_t> lost) {
+    const Reach reach = search_->reaches[static_cast<size_t>(near)];
+    if (reach == kTwoEdges ||
+        (reach == kOneEdge && ContainsAny(stencils_[static_cast<size_t>(near)], lost))) {
+      Touch(near);
+    }
+    const int32_t first = *std::min_element(lost.begin(), lost.end());
+    const std::span<const int32_t> ring = graph_.Neighbours(near);
+    std::array<int32_t, 64> others;
+    for (size_t begin = 0; begin < ring.size(); begin += others.size()) {
+      size_t found = 0;
+      for (const int32_t place :
+           ring.subspan(begin, std::min(others.size(), ring.size() - begin))) {
+        const auto index = static_cast<size_t>(std::max(place, 0));
+        __builtin_prefetch(stencils_.data() + index);
+        others[found] = place;
+        // Stencils have earlier places only. Without branches, which nobody could predict.
+        found += static_cast<size_t>((place >= first) & (search_->reaches[index] == kTwoEdges) &
+                                     !IsTouched(std::max(place, 0)));
+      }
+      for (const int32_t other : std::span(others).first(found)) {
+        if (ContainsAny(stencils_[static_cast<size_t>(other)], lost)) Touch(other);
+      }
+    }
+  };
+  std::array<int32_t, 64> lost;
+  size_t count = 0;
+  for (const int32_t other : graph_.Neighbours(near)) {
+    // Edges between such places that were broken before make no difference.
+    if (other >= 0 || lost_edges_[static_cast<size_t>(~other)] == 0) continue;
+    lost[count++] = ~other;
+    if (count < lost.size()) continue;
+    touch(lost);
+    count = 0;
+  }
+  if (count > 0) touch(std::span(lost.data(), count));
+}
+
+// Of stencils that were found in space, those with places that are now of another piece.
+void Stencils::TouchInSpace() {
+  ParallelFor(graph_.places(), 8192, [&](int64_t begin, int64_t end) {
+    for (auto place = static_cast<int32_t>(begin); place < end; ++place) {
+      if (search_->reaches[static_cast<size_t>(place)] >= kInSpace && LostPlaces(place)) {
+        Touch(place);
+      }
+    }
+  });
+}
+
 // The places that a place is to be predicted from.
-template <typename IsVisible>
-void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
-                      IsVisible is_visible) {
+void Stencils::SearchFor(const NodeOrder& order, int32_t place, Nearest& nearest) {
   const auto index = static_cast<size_t>(place);
   const size_t group = order.GroupOf(place);
   const int32_t coarse_end = order.group_begins[group];
   Candidates candidates(rest_, nearest);
   const auto any = [](int32_t) { return true; };
   // Breaks only take places away, so that a search never ends nearer than it did before.
-  Reach& reach = reaches_[index];
+  Reach& reach = search_->reaches[index];
   if (reach < kInSpace) {
     for (const int32_t other : graph_.Neighbours(place)) {
       if (other >= coarse_end) break;  // ascending but for the broken ones, which are negative
-      candidates.Add(other, other >= 0 && is_visible(other));
+      candidates.Add(other, other >= 0);
     }
     candidates.Flush(any);
     if (nearest.count() < kEnoughNear) {
@@ -90,8 +169,7 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
         if (other >= coarse_end) break;
         int32_t& same = recent[static_cast<size_t>(other) % recent.size()];
         // Without branches, which nobody could predict.
-        const bool is_new = (other >= 0) & (same != other);
-        candidates.Add(other, is_new & is_visible(std::max(other, 0)));
+        candidates.Add(other, (other >= 0) & (same != other));
         same = other;
       }
     }
@@ -104,7 +182,7 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
     const auto same_piece = [&](int32_t other) { return pieces_[other] == piece; };
     // What smaller cubes hold is in the larger ones too.
     for (size_t size = reach - kInSpace; group > 0; ++size) {
-      const CubeIndex& cubes = cubes_[group][size];
+      const CubeIndex& cubes = search_->cubes[group][size];
       const bool is_largest = size + 1 == kCubeSizes || cubes.bits() == kMortonBits;
       reach = static_cast<Reach>(kInSpace + size);
       const CubesAround around(order.codes[index], cubes.bits());
@@ -140,59 +218,22 @@ void Stencils::Search(const NodeOrder& order, int32_t place, Nearest& nearest,
   }
 }
 
-void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places) {
-  if (visible_) {
-    // By value, so that nothing that is written can change where it reads.
-    const uint8_t* const visible = visible_->marks().data();
-    Rebuild(order, places, [visible](int32_t place) { return visible[place] != 0; });
-  } else {
-    Rebuild(order, places, kAllVisible);
-  }
-}
-
-template <typename IsVisible>
-void Stencils::Rebuild(const NodeOrder& order, std::span<const int32_t> places,
-                       const IsVisible& is_visible) {
+void Stencils::SearchForTouched(const NodeOrder& order) {
   constexpr int64_t kLanes = 4;
-  constexpr bool kInView = !std::is_same_v<IsVisible, std::remove_cvref_t<decltype(kAllVisible)>>;
-  const auto rebuild_four = [&](std::span<const int32_t> some) {
-    StencilBatch batch;
-    for (size_t lane = 0; lane < some.size(); ++lane) {
-      const auto index = static_cast<size_t>(some[lane]);
-      const Vec3& centre = rest_[index];
-      Nearest nearest(centre);
-      Search(order, some[lane], nearest, is_visible);
-      const size_t count = nearest.count();
-      batch.counts[static_cast<int>(lane)] = static_cast<int32_t>(count);
-      if constexpr (kInView) {
-        far_squares_[index] = count < kStencilNodes ? std::numeric_limits<double>::infinity()
-                                                    : nearest.Square(count - 1);
-      }
-      Stencil& stencil = stencils_[index];
-      stencil.places.fill(count > 0 ? nearest[0] : -1);
-      for (size_t k = 0; k < count; ++k) {
-        stencil.places[k] = nearest[k];
-        const Vec3& neighbour = rest_[static_cast<size_t>(nearest[k])];
-        for (size_t axis = 0; axis < 3; ++axis) {
-          batch.offsets[k][axis][static_cast<int>(lane)] = neighbour[axis] - centre[axis];
-        }
-      }
-    }
-    const std::array<Int32x4, kStencilNodes> weights = StencilWeights(batch);
-    for (size_t lane = 0; lane < some.size(); ++lane) {
-      Stencil& stencil = stencils_[static_cast<size_t>(some[lane])];
-      const bool leads = stencil.leads();
-      for (size_t k = 0; k < kStencilNodes; ++k) {
-        stencil.weights[k] = leads ? 0 : weights[k][static_cast<int>(lane)];
-      }
-    }
-  };
-  const auto count = static_cast<int64_t>(places.size());
+  const auto count = static_cast<int64_t>(touched_.size());
   ParallelFor((count + kLanes - 1) / kLanes, 16, [&](int64_t begin, int64_t end) {
     for (int64_t four = begin; four < end; ++four) {
       const int64_t first = four * kLanes;
-      rebuild_four(places.subspan(static_cast<size_t>(first),
-                                  static_cast<size_t>(std::min(kLanes, count - first))));
+      const auto places = std::span(touched_).subspan(
+          static_cast<size_t>(first), static_cast<size_t>(std::min(kLanes, count - first)));
+      for (const int32_t place : places) {
+        Nearest nearest(rest_[static_cast<size_t>(place)]);
+        SearchFor(order, place, nearest);
+        Stencil& stencil = stencils_[static_cast<size_t>(place)];
+        stencil.places.fill(nearest.count() > 0 ? nearest[0] : -1);
+        for (size_t k = 0; k < nearest.count(); ++k) stencil.places[k] = nearest[k];
+      }
+      Weigh(places);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/base/vec3.h"
 #include "core/stream/cube_index.h"
 #include "core/stream/edge_graph.h"
+#include "core/stream/near_places.h"
 #include "core/stream/nearest.h"
 #include "core/stream/node_order.h"
 #include "core/stream/pieces.h"
@@ -20,8 +22,6 @@
 #include "core/stream/visible_places.h"
 
 namespace cleave {
-
-inline constexpr size_t kCubeSizes = 3;  // sizes of cube that are searched around a place
 
 // Earlier places from which a place is predicted, all of its own piece. Unused ones repeat the
 // first, with weight 0. The leader of a piece has none: all are -1.
@@ -43,94 +43,100 @@ class Stencils {
   Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place, const StreamMesh& mesh);
 
   // Brings everything to this set of broken edges (ascending ids in range). Where edges only broke,
-  // the work is in proportion to what they touch. Returns the places whose stencil was made anew,
-  // ascending.
+  // the work is in proportion to what they touch. Returns the places whose stencil may have
+  // changed, ascending.
   const std::vector<int32_t>& SetBroken(const NodeOrder& order, std::span<const int32_t> broken);
 
   const Stencil& operator[](int32_t place) const { return stencils_[static_cast<size_t>(place)]; }
   const Pieces& pieces() const { return pieces_; }
   // The first visible place of each piece, ascending.
-  const std::vector<int32_t>& leaders() const { return visible_ ? leaders_ : pieces_.leaders(); }
+  const std::vector<int32_t>& leaders() const { return view_ ? view_->leaders : pieces_.leaders(); }
   // That of a piece; -1 if nothing of it is visible.
   int32_t LeaderOf(int32_t piece) const {
-    return visible_ ? leader_of_[static_cast<size_t>(piece)]
-                    : pieces_.leaders()[static_cast<size_t>(piece)];
+    return view_ ? view_->leader_of[static_cast<size_t>(piece)]
+                 : pieces_.leaders()[static_cast<size_t>(piece)];
   }
-  // Set in a surface view.
-  const std::optional<VisiblePlaces>& visible() const { return visible_; }
+  // Of a surface view; else null.
+  const VisiblePlaces* visible() const { return view_ ? &view_->visible : nullptr; }
+  const NearPlaces* near() const { return view_ ? view_->near.get() : nullptr; }  // likewise
   // Places that the last SetBroken made visible, ascending. Where edges are whole again, as if all
   // had been, and then had broken.
   const std::vector<int32_t>& fresh() const { return fresh_; }
   // The lowest place that was visible before that SetBroken and shares an edge, whole or broken,
-  // with `place`; or -1.
+  // with `place`; or -1. Precondition: a surface view.
   int32_t KnownNeighbour(int32_t place) const;
   const LargeVector<Vec3>& rest_positions() const { return rest_; }  // m, by place
   const std::vector<int32_t>& broken() const { return broken_; }
 
  private:
-  Stencils(const NodeOrder& order, std::span<const Vec3> rest_by_place,
-           std::span<const std::array<int32_t, 2>> edges, std::optional<VisiblePlaces> visible);
-
   // Where a stencil's places were found: over one edge, over two, or in space, there in cubes of
   // the least size, the next, ... What later changes it, and where to search then, depends on that.
   using Reach = uint8_t;
   static constexpr Reach kOneEdge = 0;
   static constexpr Reach kTwoEdges = 1;
   static constexpr Reach kInSpace = 2;
+  static constexpr size_t kCubeSizes = 3;
 
-  // What must be done about a stencil: the greatest of what is found to be.
-  using Change = uint8_t;
-  static constexpr Change kNone = 0;
-  static constexpr Change kSearch = 1;         // from its reach on
-  static constexpr Change kSearchInSpace = 2;  // that is its reach; from the least cubes on
-  static constexpr Change kSearchAnew = 3;
+  // What the state view searches with.
+  struct Search {
+    std::vector<std::array<CubeIndex, kCubeSizes>> cubes;  // of each group: the coarser places
+    std::vector<Reach> reaches;                            // by place
+  };
+  // What a stencil of a surface view has: places that edges led to; some that none led to; only a
+  // leader, or nothing.
+  using Kind = uint8_t;
+  static constexpr Kind kAllByEdges = 0;
+  static constexpr Kind kSomeInSpace = 1;
+  static constexpr Kind kNoneFound = 2;
 
-  // In stencil_search.cc.
-  template <typename IsVisible>
-  void Search(const NodeOrder& order, int32_t place, Nearest& nearest, IsVisible is_visible);
-  template <typename IsVisible>
-  void Rebuild(const NodeOrder& order, std::span<const int32_t> places,
-               const IsVisible& is_visible);
-  void Rebuild(const NodeOrder& order, std::span<const int32_t> places);
-  // In stencils_in_view.cc.
-  void FindLeaders();
-  void ShowInCubes(const NodeOrder& order, std::span<const int32_t> places);
-  void TouchRoundFresh(const NodeOrder& order);
-  void TouchInSpaceInView(const NodeOrder& order, bool splits);
-  void TouchRing(int32_t between);
+  // What a surface view has.
+  struct View {
+    VisiblePlaces visible;
+    std::shared_ptr<const NearPlaces> near;  // which copies share
+    std::vector<uint64_t> broken;            // a bit for each edge; one more stays 0
+    // By place: which of its near places is the last of its stencil; kMaxNearPlaces where there is
+    // room for more, 0 where it is hidden.
+    std::vector<uint16_t> ranks;
+    std::vector<Kind> kinds;         // by place, of its stencil
+    std::vector<int32_t> leaders;    // ascending
+    std::vector<int32_t> leader_of;  // of each piece: its first visible place, or -1
+  };
 
-  void TouchAll();
-  void Touch(int32_t place, Change change);
-  Change ChangeOf(int32_t place) {  // as far as is known
-    return std::atomic_ref(changes_[static_cast<size_t>(place)]).load(std::memory_order_relaxed);
+  void Prepare(const NodeOrder& order);
+  void MakeAll(const NodeOrder& order);
+  void Break(std::span<const int32_t> edges);
+  void Touch(int32_t place) {  // several threads may do so
+    std::atomic_ref(marks_[static_cast<size_t>(place)]).store(1, std::memory_order_relaxed);
+  }
+  bool IsTouched(int32_t place) {  // as far as is known
+    return std::atomic_ref(marks_[static_cast<size_t>(place)]).load(std::memory_order_relaxed) != 0;
   }
   bool LostPlaces(int32_t place) const;
+  void Weigh(std::span<const int32_t> places);
+  // In stencil_search.cc, for the state view.
+  Search MakeSearch(const NodeOrder& order) const;
+  void TouchAround(std::span<const int32_t> ends);
   void TouchAround(int32_t near);
   void TouchInSpace();
-  void TakeTouched();
-  static void ListMarked(std::span<const uint8_t> marks, std::vector<int32_t>& places);
+  void SearchFor(const NodeOrder& order, int32_t place, Nearest& nearest);
+  void SearchForTouched(const NodeOrder& order);
+  // In stencils_in_view.cc, for a surface view.
+  void FindLeaders();
+  void TouchInView(std::span<const int32_t> ends, bool splits);
+  bool ChooseInView(int32_t place);
+  void ChooseForTouched();
 
   LargeVector<Vec3> rest_;  // m, by place
   EdgeGraph graph_;
-  // Of each group: the coarser places, in a surface view those that are visible.
-  std::vector<std::array<CubeIndex, kCubeSizes>> cubes_;
   Pieces pieces_;
   LargeVector<Stencil> stencils_;
-  std::vector<Reach> reaches_;
   std::vector<int32_t> broken_;
   std::vector<uint8_t> lost_edges_;  // by place: 1 in a call that breaks some
-  std::vector<Change> changes_;      // by place; all kNone but in SetBroken
+  std::vector<uint8_t> marks_;       // by place: 1 if it was touched; all 0 but in SetBroken
   std::vector<int32_t> touched_;
-  // In a surface view.
-  std::optional<VisiblePlaces> visible_;
   std::vector<int32_t> fresh_;
-  std::vector<uint8_t> marks_;  // by place; all 0 but in SetBroken
-  // Of each place's stencil: how far its last place is, squared (m^2), or infinity if it has room.
-  std::vector<double> far_squares_;
-  // Of each group: the cubes that touch one that coarser fresh places are in.
-  std::vector<std::array<CubeSet, kCubeSizes>> near_fresh_;
-  std::vector<int32_t> leaders_;    // ascending
-  std::vector<int32_t> leader_of_;  // of each piece: its first visible place, or -1
+  std::optional<Search> search_;  // one of both
+  std::optional<View> view_;
 };
 
 }  // namespace cleave

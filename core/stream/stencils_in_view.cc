@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstring>
 
 #include "core/base/parallel.h"
 #include "core/stream/stencils.h"
@@ -11,161 +12,130 @@
 namespace cleave {
 namespace {
 
-constexpr uint8_t kFresh = 1;
-constexpr uint8_t kDone = 2;  // TouchRing, of what is next to fresh places
-constexpr size_t kRoom = 64;
-constexpr size_t kAhead = 8;  // how many places on what will be read is fetched
+constexpr int64_t kAhead = 4;  // how far ahead that is fetched which will be read
 
 }  // namespace
 
 void Stencils::FindLeaders() {
-  leaders_.clear();
-  leader_of_.assign(static_cast<size_t>(pieces_.count()), -1);
-  for (const int32_t place : visible_->places()) {
-    int32_t& leader = leader_of_[static_cast<size_t>(pieces_[place])];
+  view_->leaders.clear();
+  view_->leader_of.assign(static_cast<size_t>(pieces_.count()), -1);
+  for (const int32_t place : view_->visible.places()) {
+    int32_t& leader = view_->leader_of[static_cast<size_t>(pieces_[place])];
     if (leader >= 0) continue;
     leader = place;
-    leaders_.push_back(place);
+    view_->leaders.push_back(place);
   }
 }
 
-// Lets searches in space find these places, which are ascending.
-void Stencils::ShowInCubes(const NodeOrder& order, std::span<const int32_t> places) {
-  const auto tables = static_cast<int64_t>(cubes_.size() * kCubeSizes);
-  ParallelFor(tables, 1, [&](int64_t begin, int64_t end) {
-    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      CubeIndex& cubes = cubes_[at / kCubeSizes][at % kCubeSizes];
-      if (cubes.empty()) continue;
-      const int32_t coarse_end = order.group_begins[at / kCubeSizes];
-      const auto code = [&](size_t k) { return order.codes[static_cast<size_t>(places[k])]; };
-      const auto count = static_cast<size_t>(
-          std::lower_bound(places.begin(), places.end(), coarse_end) - places.begin());
-      for (size_t k = 0; k < count; ++k) {
-        if (k + kAhead < count) cubes.PrefetchOf(code(k + kAhead));
-        cubes.Add(code(k), places[k]);
-      }
-    }
-  });
-}
-
-// A place that comes into view can be nearer to others than what they have. Those that may take it
-// are searched for anew: here those over one edge or two, if that is how far their search went and
-// it is nearer, or if it went farther. No piece is looked at. Also makes what
-// TouchInCubesOfFresh needs.
-void Stencils::TouchRoundFresh(const NodeOrder& order) {
-  if (fresh_.empty()) return;
-  const auto tables = static_cast<int64_t>(cubes_.size() * kCubeSizes);
-  ParallelFor(tables, 1, [&](int64_t begin, int64_t end) {
-    for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
-      const CubeIndex& cubes = cubes_[at / kCubeSizes][at % kCubeSizes];
-      CubeSet& near = near_fresh_[at / kCubeSizes][at % kCubeSizes];
-      near.Clear(cubes.bits());
-      if (cubes.empty()) continue;
-      const int32_t coarse_end = order.group_begins[at / kCubeSizes];
-      for (const int32_t place : fresh_) {
-        if (place >= coarse_end) break;
-        near.Add(order.codes[static_cast<size_t>(place)] >> (3 * cubes.bits()));
-      }
-      near.Widen();
-    }
-  });
-  for (const int32_t place : fresh_) {
-    marks_[static_cast<size_t>(place)] = kFresh;
-    Touch(place, kSearchAnew);
-  }
-  ParallelFor(static_cast<int64_t>(fresh_.size()), 64, [&](int64_t begin, int64_t end) {
+// Touches all whose choice can be another than it was, where these places lost edges.
+void Stencils::TouchInView(std::span<const int32_t> ends, bool splits) {
+  // What lost an edge that led to a place of its stencil is an end of it, or next to one.
+  ParallelFor(static_cast<int64_t>(ends.size()), 256, [&](int64_t begin, int64_t end) {
     for (int64_t at = begin; at < end; ++at) {
-      if (at + 1 < end) {
-        for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at + 1)])) {
-          graph_.Prefetch(std::max(place, 0));
-        }
-      }
-      for (const int32_t place : graph_.Neighbours(fresh_[static_cast<size_t>(at)])) {
-        if (place < 0) continue;
-        const std::atomic_ref<uint8_t> mark(marks_[static_cast<size_t>(place)]);
-        if ((mark.load(std::memory_order_relaxed) & kDone) != 0) continue;
-        if ((mark.fetch_or(kDone, std::memory_order_relaxed) & kDone) == 0) TouchRing(place);
+      if (at + 2 * kAhead < end) graph_.Prefetch(ends[static_cast<size_t>(at + 2 * kAhead)]);
+      Touch(ends[static_cast<size_t>(at)]);
+      for (const int32_t next : graph_.Neighbours(ends[static_cast<size_t>(at)])) {
+        if (next >= 0) Touch(next);
       }
     }
   });
-  std::fill(marks_.begin(), marks_.end(), uint8_t{0});
-}
-
-// Those that were found in space: where `splits` says that a piece split, those that lost places to
-// another; and in cubes that fresh places touch, those of pieces that have some; also those that
-// found one place alone, since that may be what led their piece before.
-void Stencils::TouchInSpaceInView(const NodeOrder& order, bool splits) {
-  std::vector<uint8_t> has_fresh(static_cast<size_t>(pieces_.count()), 0);
-  for (const int32_t place : fresh_) has_fresh[static_cast<size_t>(pieces_[place])] = 1;
-  const std::vector<int32_t>& places = visible_->places();
-  ParallelFor(static_cast<int64_t>(places.size()), 4096, [&](int64_t begin, int64_t end) {
-    size_t group = order.GroupOf(places[static_cast<size_t>(begin)]);
+  // Places that come into view, and whoever has one nearer than the last of theirs.
+  ParallelFor(static_cast<int64_t>(fresh_.size()), 256, [&](int64_t begin, int64_t end) {
+    for (int64_t at = begin; at < end; ++at) {
+      if (at + kAhead < end) {
+        const auto next = view_->near->ReadersOf(fresh_[static_cast<size_t>(at + kAhead)]);
+        for (size_t k = 0; k < next.size() && k < 32; k += 8) __builtin_prefetch(next.data() + k);
+      }
+      const int32_t place = fresh_[static_cast<size_t>(at)];
+      Touch(place);
+      for (const NearPlaces::Reader& reader : view_->near->ReadersOf(place)) {
+        if (reader.rank < view_->ranks[static_cast<size_t>(reader.place)]) Touch(reader.place);
+      }
+    }
+  });
+  // Places of the same piece that no edges led to, and leaders.
+  const std::vector<int32_t>& places = view_->visible.places();
+  ParallelFor(static_cast<int64_t>(places.size()), 8192, [&](int64_t begin, int64_t end) {
     for (auto at = static_cast<size_t>(begin); at < static_cast<size_t>(end); ++at) {
       const int32_t place = places[at];
-      const auto index = static_cast<size_t>(place);
-      while (place >= order.group_begins[group + 1]) ++group;
-      if (reaches_[index] < kInSpace || ChangeOf(place) >= kSearchInSpace) continue;
-      if (splits && LostPlaces(place)) Touch(place, kSearch);
-      if (has_fresh[static_cast<size_t>(pieces_[place])] == 0) continue;
-      const size_t size = reaches_[index] - kInSpace;
-      const uint64_t cube = order.codes[index] >> (3 * cubes_[group][size].bits());
-      const Stencil& stencil = stencils_[index];
-      if (stencil.places[1] == stencil.places[0] || near_fresh_[group][size].Has(cube)) {
-        Touch(place, kSearchInSpace);
+      const Kind kind = view_->kinds[static_cast<size_t>(place)];
+      if (kind == kNoneFound || (kind == kSomeInSpace && splits && LostPlaces(place))) {
+        Touch(place);
       }
     }
   });
 }
 
-// A place with fresh ones next to it, that is over an unbroken edge: of it and of all that is next
-// to it, what the fresh ones are near enough to.
-void Stencils::TouchRing(int32_t between) {
-  const std::span<const int32_t> ring = graph_.Neighbours(between);
-  std::array<int32_t, kRoom> fresh;
+// The places that a visible place is to be predicted from. False if it has them already.
+bool Stencils::ChooseInView(int32_t place) {
+  const auto index = static_cast<size_t>(place);
+  const int32_t piece = pieces_[place];
+  const uint8_t* const visible = view_->visible.marks().data();
+  const int32_t* const labels = pieces_.labels().data();
+  const uint64_t* const broken = view_->broken.data();
+  const auto is_broken = [&](int32_t edge) {
+    return broken[static_cast<size_t>(edge) / 64] >> (edge % 64) & 1;
+  };
+  const int32_t no_edge = view_->near->no_edge();
+  std::array<int32_t, kStencilNodes + 1> chosen;
   size_t count = 0;
-  for (const int32_t place : ring) {
-    const auto index = static_cast<size_t>(std::max(place, 0));
-    const uint8_t mark = std::atomic_ref(marks_[index]).load(std::memory_order_relaxed);
-    fresh[count] = place;  // without branches, which nobody could predict
-    count += static_cast<size_t>((place >= 0) & ((mark & kFresh) != 0));
-    if (count == kRoom) break;
+  size_t rank = 0;
+  bool is_in_space = false;
+  for (const NearPlaces::Near& near : view_->near->Of(place)) {
+    const bool is_one = (visible[near.place] != 0) & (labels[near.place] == piece) &
+                        ((is_broken(near.edges[0]) | is_broken(near.edges[1])) == 0);
+    chosen[count] = near.place;
+    count += static_cast<size_t>(is_one);
+    is_in_space |= is_one & (near.edges[0] == no_edge);
+    if (count == kStencilNodes) break;
+    ++rank;
   }
-  const bool are_all = count < kRoom;
-  const auto one_is_near = [&](int32_t place) {
-    const double reach = far_squares_[static_cast<size_t>(place)];
-    if (!are_all) return true;
-    const Vec3& centre = rest_[static_cast<size_t>(place)];
-    for (size_t k = 0; k < count && fresh[k] < place; ++k) {
-      const Vec3& x = rest_[static_cast<size_t>(fresh[k])];
-      const double dx = x[0] - centre[0];
-      const double dy = x[1] - centre[1];
-      const double dz = x[2] - centre[2];
-      if (dx * dx + dy * dy + dz * dz <= reach) return true;
-    }
-    return false;
-  };
-  // Whether the search for it stopped before it came as far as fresh places are, at most `edges`.
-  const auto touch = [&](int32_t place, Reach edges) {
-    if (reaches_[static_cast<size_t>(place)] > edges || one_is_near(place)) {
-      Touch(place, kSearchAnew);
-    }
-  };
-  if (between > fresh[0] && visible_->Has(between) && ChangeOf(between) != kSearchAnew) {
-    touch(between, kOneEdge);
+  Kind kind = is_in_space ? kSomeInSpace : kAllByEdges;
+  if (count == 0) {
+    const int32_t leader = LeaderOf(piece);
+    chosen[0] = leader == place ? -1 : leader;
+    kind = kNoneFound;
   }
-  // Hidden places have no reach.
-  std::array<int32_t, kRoom> others;
-  for (size_t begin = 0; begin < ring.size(); begin += kRoom) {
-    size_t found = 0;
-    for (const int32_t place : ring.subspan(begin, std::min(kRoom, ring.size() - begin))) {
-      const int32_t other = std::max(place, 0);
-      others[found] = place;
-      found += static_cast<size_t>((place > fresh[0]) &
-                                   (reaches_[static_cast<size_t>(other)] >= kTwoEdges) &
-                                   (ChangeOf(other) != kSearchAnew));
+  for (size_t k = std::max(count, size_t{1}); k < kStencilNodes; ++k) chosen[k] = chosen[0];
+  uint16_t& last = view_->ranks[index];
+  const bool is_new = last == 0;
+  last = static_cast<uint16_t>(count == kStencilNodes ? rank : kMaxNearPlaces);
+  view_->kinds[index] = kind;
+  Stencil& stencil = stencils_[index];
+  constexpr size_t kBytes = sizeof(stencil.places);
+  if (!is_new && std::memcmp(stencil.places.data(), chosen.data(), kBytes) == 0) return false;
+  std::memcpy(stencil.places.data(), chosen.data(), kBytes);
+  return true;
+}
+
+// Leaves of what was touched that which changes.
+void Stencils::ChooseForTouched() {
+  ParallelFor(static_cast<int64_t>(touched_.size()), 256, [&](int64_t begin, int64_t end) {
+    constexpr size_t kLanes = 4;
+    std::array<int32_t, kLanes> changed;
+    size_t count = 0;
+    for (int64_t at = begin; at < end; ++at) {
+      if (at + kAhead < end) {
+        const auto next = view_->near->Of(touched_[static_cast<size_t>(at + kAhead)]);
+        for (size_t k = 0; k < next.size() && k < 20; k += 5) __builtin_prefetch(next.data() + k);
+      }
+      const int32_t place = touched_[static_cast<size_t>(at)];
+      if (!view_->visible.Has(place) || !ChooseInView(place)) continue;
+      marks_[static_cast<size_t>(place)] = 1;
+      changed[count++] = place;
+      if (count < kLanes) continue;
+      Weigh(changed);
+      count = 0;
     }
-    for (size_t at = 0; at < found; ++at) touch(others[at], kTwoEdges);
+    if (count > 0) Weigh(std::span(changed).first(count));
+  });
+  size_t count = 0;
+  for (const int32_t place : touched_) {
+    touched_[count] = place;
+    count += marks_[static_cast<size_t>(place)];
+    marks_[static_cast<size_t>(place)] = 0;
   }
+  touched_.resize(count);
 }
 
 int32_t Stencils::KnownNeighbour(int32_t place) const {
@@ -173,7 +143,7 @@ int32_t Stencils::KnownNeighbour(int32_t place) const {
   for (const int32_t found : graph_.Neighbours(place)) {
     const int32_t other = std::max(found, ~found);
     const bool is_known =
-        visible_->Has(other) && !std::binary_search(fresh_.begin(), fresh_.end(), other);
+        view_->visible.Has(other) && !std::binary_search(fresh_.begin(), fresh_.end(), other);
     if (is_known && (lowest < 0 || other < lowest)) lowest = other;
   }
   return lowest;

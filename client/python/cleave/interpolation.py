@@ -5,6 +5,7 @@ Arrays of coordinates are (places, 3) int64 in the order of places.
 
 import numpy as np
 
+from cleave.near_places import NearPlaces, in_cubes
 from cleave.visible import VisiblePlaces
 
 MAX_QUANTISED = 2**30 - 1
@@ -77,6 +78,8 @@ class Stencils:
         self._all_visible = None
         if tets is not None:
             self._all_visible = VisiblePlaces(len(rest), self.ends, place[np.asarray(tets, int)])
+            outer = self._all_visible.of(np.empty(0, int))
+            self._near = NearPlaces(order, self._rest, self.ends, outer)
         self.set_broken(np.empty(0, int))
 
     def set_broken(self, broken):
@@ -91,24 +94,33 @@ class Stencils:
         both = both[np.lexsort((both[:, 1], both[:, 0]))]
         self._neighbours = both[:, 1]
         self._offsets = np.searchsorted(both[:, 0], np.arange(count + 1))
-        visible = self.visible
         if self._all_visible is not None:
             self.visible = self._all_visible.of(broken)
         self._find_pieces(ends)
-        grows = not np.array_equal(visible, self.visible)  # then any stencil may change
-        if not grows and self._broken is not None and np.isin(self._broken, broken).all():
+        grows = self._broken is not None and np.isin(self._broken, broken).all()
+        if self._all_visible is None and grows:
             # A superset of those that can change: around the breaks, and what was found in space.
             near = np.unique(self.ends[np.setdiff1d(broken, self._broken)])
             touched = self._in_space.copy()
             touched[near] = True
             touched[self._expand(near)[1]] = True
-            touched = np.flatnonzero(touched & self.visible)
+            touched = np.flatnonzero(touched)
         else:
             touched = np.flatnonzero(self.visible)
         for at in range(0, len(touched), _BATCH):
-            self._rebuild(touched[at : at + _BATCH])
+            if self._all_visible is None:
+                self._search(touched[at : at + _BATCH])
+            else:
+                self._choose_near(touched[at : at + _BATCH], whole)
         self._broken = np.array(broken)
         return touched
+
+    @property
+    def of_labels(self):
+        """Of each place those by which its label is coded (6.2), as long as no edge is broken."""
+        if self._all_visible is None:
+            return self.places
+        return self._near.first(_STENCIL)
 
     def blend(self, at, positions):
         """The blends of these places, none of which leads."""
@@ -160,11 +172,11 @@ class Stencils:
         within = np.arange(len(owners)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
         return owners, self._neighbours[self._offsets[at][owners] + within]
 
-    def _rebuild(self, at):
+    def _search(self, at):
         coarse_end = self._order.begins[self._order.group[at]]
 
         def coarser(owners, others):
-            keep = (others < coarse_end[owners]) & self.visible[others]
+            keep = others < coarse_end[owners]
             return owners[keep], others[keep]
 
         owners, others = self._expand(at)
@@ -179,38 +191,21 @@ class Stencils:
         for larger in range(3):
             few = np.bincount(found[0], minlength=len(at)) < _STENCIL
             few &= self._in_space[at]
-            found = _unique(*_join(found, self._in_cubes(at, np.flatnonzero(few), larger)))
+            owners, others = in_cubes(self._order, at, np.flatnonzero(few), larger)
+            same = self.piece[others] == self.piece[at[owners]]
+            found = _unique(*_join(found, (owners[same], others[same])))
+        self._choose(at, *self._with_leaders(at, found))
+
+    def _choose_near(self, at, whole):
+        owners, near, edges = self._near.of(at)
+        usable = self.visible[near] & (self.piece[near] == self.piece[at[owners]])
+        usable &= np.append(whole, True)[edges].all(axis=1)
+        self._choose(at, *self._with_leaders(at, (owners[usable], near[usable])))
+
+    def _with_leaders(self, at, found):
         lonely = np.bincount(found[0], minlength=len(at)) == 0
         lonely &= self._leader[at] != at
-        found = _join(found, (np.flatnonzero(lonely), self._leader[at[lonely]]))
-        self._choose(at, *found)
-
-    def _in_cubes(self, at, wanting, larger):
-        """Coarser places of the same piece in the 27 cubes, as pairs like _expand's."""
-        owners, others = [np.empty(0, int)], [np.empty(0, int)]
-        groups = self._order.group[at[wanting]]
-        for group in np.unique(groups):
-            bits = self._order.cube_bits[group] + larger
-            if bits > 21:
-                continue
-            mine = wanting[groups == group]
-            coarse = self._order.grid[: self._order.begins[group]] >> bits
-            keys = _cube_key(coarse)
-            sorting = np.argsort(keys, kind="stable")
-            cubes = self._order.grid[at[mine]] >> bits
-            for offset in np.ndindex(3, 3, 3):
-                cube = cubes + np.array(offset) - 1
-                inside = ((cube >= 0) & (cube < 1 << (21 - bits))).all(axis=1)
-                key = _cube_key(cube[inside])
-                first = np.searchsorted(keys[sorting], key, "left")
-                sizes = np.searchsorted(keys[sorting], key, "right") - first
-                owner = np.repeat(mine[inside], sizes)
-                within = np.arange(len(owner)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-                other = sorting[np.repeat(first, sizes) + within]
-                same = (self.piece[other] == self.piece[at[owner]]) & self.visible[other]
-                owners.append(owner[same])
-                others.append(other[same])
-        return np.concatenate(owners), np.concatenate(others)
+        return _join(found, (np.flatnonzero(lonely), self._leader[at[lonely]]))
 
     def _choose(self, at, owners, others):
         offset = self._rest[others] - self._rest[at[owners]]
@@ -241,10 +236,6 @@ def _join(one, other):
 def _unique(owners, others):
     pairs = np.unique(owners.astype("i8") << 32 | others)
     return pairs >> 32, pairs & 0xFFFFFFFF
-
-
-def _cube_key(cube):
-    return (cube[:, 0] << 42) | (cube[:, 1] << 21) | cube[:, 2]
 
 
 def _weights(there, offsets, squares):

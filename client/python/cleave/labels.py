@@ -8,11 +8,11 @@ _NEW, _LISTED = 254, 255
 
 
 class PieceLabels:
-    """Decodes labels for one mesh. `predictor` has seen no broken edge yet."""
+    """Decodes labels for one mesh. `stencils` have seen no broken edge yet."""
 
-    def __init__(self, predictor):
-        self._ends = predictor.stencils.ends
-        places = predictor.stencils.places
+    def __init__(self, stencils):
+        self._ends = stencils.ends
+        places = stencils.of_labels
         there = places >= 0
         there[:, 1:] &= places[:, 1:] != places[:, :1]  # unused ones repeat the first
         self._earlier = [row[ok].tolist() for row, ok in zip(places, there)]

@@ -89,8 +89,7 @@ class FrameDecoder:
             except ValueError as error:
                 raise WrongStateError(f"tets are not those of the stream's mesh: {error}") from None
             self._rest = rest[self._predictor.order.nodes]
-            whole = self._predictor if tets is None else Predictor(rest, edges)
-            self._labels = PieceLabels(whole)
+            self._labels = PieceLabels(self._predictor.stencils)
         self._history = ResidualHistory(self.header.nodes)
         self._previous = None
         self._quantised = None

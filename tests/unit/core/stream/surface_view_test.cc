@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -94,6 +95,61 @@ TEST(SurfaceView, StencilsAreThoseOfVisiblePlacesHoweverTheEdgesCameToBreak) {
     visible_before = count;
   }
   EXPECT_GT(visible_before, body.rest.size() * 8 / 10);
+}
+
+// By definition, from scratch.
+std::vector<int32_t> StencilPlaces(const Stencils& stencils, const std::set<int32_t>& broken,
+                                   int32_t place) {
+  std::vector<int32_t> places;
+  for (const NearPlaces::Near& one : stencils.near()->Of(place)) {
+    const bool is_joined = !broken.contains(one.edges[0]) && !broken.contains(one.edges[1]);
+    const bool is_usable = stencils.visible()->Has(one.place) &&
+                           stencils.pieces()[one.place] == stencils.pieces()[place];
+    if (is_joined && is_usable && places.size() < kStencilNodes) places.push_back(one.place);
+  }
+  const int32_t leader = stencils.LeaderOf(stencils.pieces()[place]);
+  if (places.empty()) places.push_back(leader == place ? -1 : leader);
+  places.resize(kStencilNodes, places[0]);
+  return places;
+}
+
+TEST(SurfaceView, StencilsAreOfNearPlacesHoweverFewEdgesBreakAtATime) {
+  const Body body = LatticeBody(13, 9, 8);
+  const NodeOrder order = MakeNodeOrder(body.rest);
+  const std::vector<Vec3> rest = ByPlace(order, body.rest);
+  Stencils stencils(order, rest, body.mesh());
+  std::set<int32_t> broken;
+  size_t pieces = 1;
+  for (uint64_t round = 0; round < 60; ++round) {
+    // Now one or two, now a ball's, so that parts come off and surfaces grow inside.
+    if (round % 3 == 2) {
+      const Vec3& centre = rest[static_cast<size_t>(std::abs(Random(21, round, 0)) * 900)];
+      for (size_t edge = 0; edge < body.edges.size(); ++edge) {
+        double squares[2];
+        for (const size_t end : {0, 1}) {
+          const Vec3& x = body.rest[static_cast<size_t>(body.edges[edge][end])];
+          squares[end] = std::pow(x[0] - centre[0], 2) + std::pow(x[1] - centre[1], 2) +
+                         std::pow(x[2] - centre[2], 2);
+        }
+        const bool holds = round % 2 == 0 && Random(22, round, edge) > 0.9;
+        if ((squares[0] < 0.03) != (squares[1] < 0.03) && !holds) {
+          broken.insert(static_cast<int32_t>(edge));
+        }
+      }
+    } else {
+      const double of_all = std::abs(Random(23, round, 0)) * static_cast<double>(body.edges.size());
+      broken.insert(static_cast<int32_t>(of_all));
+    }
+    stencils.SetBroken(order, std::vector<int32_t>(broken.begin(), broken.end()));
+    for (const int32_t place : stencils.visible()->places()) {
+      const std::array<int32_t, kStencilNodes>& places = stencils[place].places;
+      ASSERT_EQ(std::vector<int32_t>(places.begin(), places.end()),
+                StencilPlaces(stencils, broken, place))
+          << place << " in " << round;
+    }
+    pieces = static_cast<size_t>(stencils.pieces().count());
+  }
+  EXPECT_GT(pieces, 10u);
 }
 
 class SurfaceViewTest : public ::testing::TestWithParam<uint16_t> {};
