@@ -36,7 +36,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
        "A slab, isotropic, with fibres, and with flaws",
        "Figs. 14 and 15",
        {"iso", "aniso", "impure", "shuffled", "turned", "plain", "projected", "projected-coarse",
-        "scored", "scored-coarse"},
+        "scored", "ruled", "ruled-coarse"},
        MakeSlabTrio,
        MeasureSlabTrio,
        SlabTrioCriteria(),

@@ -25,7 +25,12 @@ constexpr double kTab = 0.12;        // m, what tabs cover of either end
 constexpr double kFibreAngle = 45;   // degrees from the pull
 constexpr int64_t kFrames = 40;
 constexpr int32_t kStepsPerFrame = 5;
-constexpr double kScore = 0.7;         // m, where scored ones are marked across
+constexpr double kScore = 0.7;  // m, where scored ones are marked across
+// Lines across ruled ones. Between two there are 2.3 cells of full size, or 1.2 that are twice as
+// long: such edges cross one nearly anywhere.
+constexpr int kRules = 21;
+constexpr double kFirstRule = 0.105;   // m
+constexpr double kRuleSpacing = 0.04;  // m
 constexpr double kSameCrack = 0.0172;  // m, a cell of full size, on any mesh
 
 // How a body is pulled, until it is long torn.
@@ -37,12 +42,14 @@ struct Pull {
 // Sends a wave through the slab, 30 ms from end to end, which steps of 2 ms follow. When it is torn
 // the wave has yet to reach the band.
 constexpr Pull kFast;
+// Slower, so that it gives way at one line: the last, at the end that is pulled.
+constexpr Pull kGentle = {0.65, 0.5, 2};
 // So slow that the whole slab is strained alike, in steps of 5 ms; and as long after it is torn.
 constexpr Pull kSlow = {0.25, 1, 4};
 
 // Runs with the edge-projected reformulation, and is compared with the uniform one.
 bool IsProjected(const std::string& kind) {
-  return kind.starts_with("projected") || kind.starts_with("scored");
+  return kind.starts_with("projected") || kind.starts_with("scored") || kind.starts_with("ruled");
 }
 
 // Pulled slowly, between tabs: "plain" is what the others are without fibres.
@@ -61,6 +68,24 @@ bool InMap(const Vec3& x, double cell_size) {
     if (std::hypot(x[0] - 0.78, x[1] - y) <= std::max(0.044, 1.2 * cell_size)) return true;
   }
   return false;
+}
+
+Polyline LineAcross(double x) { return {{{x, -kWidth, 0}, {x, kWidth, 0}}}; }
+
+// A knife's lines; edges that they cross have this share of their strength.
+ImpurityLayer Scores(const std::vector<Polyline>& lines, double strength) {
+  ImpurityLayer scores;
+  scores.name = "score";
+  Strokes knife;
+  knife.curves = lines;
+  scores.source = knife;
+  scores.weakening = strength;
+  return scores;
+}
+
+Pull PullOf(const std::string& kind) {
+  if (IsTestPiece(kind)) return kSlow;
+  return kind.starts_with("ruled") ? kGentle : kFast;
 }
 
 // How this broke against the same body without fibres and with uniform weakening; adds nothing
@@ -132,18 +157,16 @@ absl::StatusOr<Demonstration> MakeSlabTrio(const Setting& setting) {
     impurities.potency = 10;
     impurities.map = MapOf(kind == "impure" ? made.in_map : Shuffled(made.in_map, setting.seed));
   }
-  if (kind.starts_with("scored")) {
-    ImpurityLayer score;
-    score.name = "score";
-    Strokes knife;
-    knife.curves = {Polyline{{{kScore, -kWidth, 0}, {kScore, kWidth, 0}}}};
-    score.source = knife;
-    score.weakening = 0.7;
-    impurities.layers.push_back(score);
+  if (kind.starts_with("scored")) impurities.layers.push_back(Scores({LineAcross(kScore)}, 0.7));
+  if (kind.starts_with("ruled")) {
+    std::vector<Polyline> lines;
+    for (int line = 0; line < kRules; ++line)
+      lines.push_back(LineAcross(kFirstRule + line * kRuleSpacing));
+    impurities.layers.push_back(Scores(lines, 0.5));
   }
   scene.impurities = impurities;
 
-  const Pull pull = IsTestPiece(kind) ? kSlow : kFast;
+  const Pull pull = PullOf(kind);
   made.grip = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
   made.pulled = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kLength - kClamp; });
   AddNodeSet(scene, "hinge", made.grip);
@@ -238,12 +261,21 @@ std::vector<Criterion> SlabTrioCriteria() {
        false,
        kHalf,
        true},
-      {"Where a knife marked it, it breaks the more of the same edges the finer the mesh",
-       {"scored", "scored-coarse"},
-       {{"edges broken in both, of those broken in either, beyond those with cells twice as long",
-         Difference(Of("scored", "common_edges"), Of("scored-coarse", "common_edges")),
+      {"Ruled, it breaks the same edges uniform and edge-projected, the more so the finer the mesh",
+       {"ruled", "ruled-coarse"},
+       {{"edges broken in both, of those broken in either", Of("ruled", "common_edges"),
+         Relation::kAtLeast, 0.7},
+        {"the same, beyond that of cells twice as long",
+         Difference(Of("ruled", "common_edges"), Of("ruled-coarse", "common_edges")),
          Relation::kAbove, 0}},
        false,
+       kMost,
+       true},
+      {"With cells twice as long, which hardly tell its rules apart, it does not",
+       {"ruled-coarse"},
+       {{"edges broken in both, of those broken in either", Of("ruled-coarse", "common_edges"),
+         Relation::kAtLeast, 0.7}},
+       true,
        kHalf,
        true},
       {"With fibres turned by 90 degrees, it breaks other edges",
