@@ -27,7 +27,8 @@ class CubesAround {
   // The cube that has this Morton code of a position, of cubes that are 2^bits Morton steps wide.
   CubesAround(uint64_t code, int bits);
 
-  std::span<const Some> blocks() const { return {blocks_.data(), count_}; }
+  std::span<const Some> blocks() const& { return {blocks_.data(), count_}; }
+  std::span<const Some> blocks() && = delete;  // a loop over it would outlive what it reads
 
  private:
   std::array<Some, 8> blocks_;

@@ -54,7 +54,8 @@ class Candidates {
             size_t count) {
     for (const CubeIndex& of_size : sizes.cubes()) {
       found_.clear();
-      for (const CubesAround::Some& some : CubesAround(code, of_size.bits()).blocks()) {
+      const CubesAround around(code, of_size.bits());
+      for (const CubesAround::Some& some : around.blocks()) {
         of_size.ForCubes(some, [&](std::span<const int32_t> in_cube) {
           for (const int32_t other : in_cube) {
             const Vec3& x = rest[static_cast<size_t>(other)];
