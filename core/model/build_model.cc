@@ -327,6 +327,7 @@ absl::StatusOr<Model> BuildModel(const Scene& scene, const TetMesh& mesh) {
     part.tets = TetsOf(scene.materials, material_of, kind);
     if (part.tets.empty()) continue;
     part.lame = LameOf(scene.materials, material_of, part.tets);
+    model.fibrous |= kind.families > 0;
     for (size_t k = 0; k < kind.families; ++k) {
       part.fibres.push_back(StiffFamily(scene.materials, material_of, fibres, part.tets, k));
     }

@@ -189,6 +189,7 @@ void NewtonSolver::BeginStep(const State& start, double dt, const NodalVector& d
     damping_->BeginStep(start, dt);
   }
   ChooseBranches(displacements, BranchChoice::kStart);
+  exact_pays_ = false;
 }
 
 bool NewtonSolver::ChooseBranches(const NodalVector& displacements, BranchChoice choice) {
@@ -312,10 +313,11 @@ absl::Status NewtonSolver::Solve(const State& start, double dt, const StopFlag& 
     bool downhill = false;
     if (near) {
       CLEAVE_ASSIGN_OR_RETURN(downhill, FindSearchDirection(stop, report));
-    } else if (slow && exact_works) {
+    } else if ((slow || (iteration == 0 && exact_pays_)) && exact_works) {
       Assemble(displacements, Curvature::kExact, report);
       CLEAVE_ASSIGN_OR_RETURN(downhill, FindSearchDirection(stop, report));
       exact_works = downhill;
+      exact_pays_ = downhill && model_.fibrous;
     }
     if (!downhill) {
       Assemble(displacements, Curvature::kSemidefinite, report);

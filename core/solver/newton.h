@@ -28,9 +28,10 @@ namespace cleave {
 // coordinates that are not given, by Newton's method with positive semidefinite element stiffness
 // and Armijo backtracking. Where the projection itself slows convergence down, or what stands in
 // for friction that slips, the exact stiffness is tried, for as long as the linear solve finds it
-// positive. A linear solve goes no further than the step needs. Source: method note, section 7. Not
-// thread-safe; loops run on the caller's TBB arena and give the same bits for any number of
-// threads.
+// positive. Where there are fibres, which soften across their length when pressed, later solves of
+// that time step begin with it. A linear solve goes no further than the step needs. Source: method
+// note, section 7. Not thread-safe; loops run on the caller's TBB arena and give the same bits for
+// any number of threads.
 class NewtonSolver {
  public:
   // `model` must outlive the solver.
@@ -118,6 +119,9 @@ class NewtonSolver {
   NodalVector search_;             // m
   NodalVector trial_;              // m
   NodalVector node_forces_;        // N, of the node terms; empty where there is none
+
+  // Whether the next solve begins with exact stiffness: where it helped earlier in the time step.
+  bool exact_pays_ = false;
 
   double slope_ = 0;             // J, dE along the search direction
   double energy_ = 0;            // J

@@ -121,5 +121,50 @@ TEST_F(PulledBar, BreaksTheSameForOtherStepsAndAggregations) {
   }
 }
 
+// How a slab with fibres askew to the pull tears.
+struct Tearing {
+  int newton_iterations = 0;
+  int break_passes = 0;
+  std::vector<int32_t> broken_edges;
+};
+
+Tearing TearSlab(bool fibrous) {
+  const TetMesh mesh = KuhnBox({30, 15, 2}, {1, 0.5, 0.05});
+  Scene scene = TightScene(1e6, 0.35, 1000, 0.01);
+  scene.quality.residual_tolerance = 1e-4;
+  scene.quality.step_tolerance = 1e-4;
+  scene.quality.linear_tolerance = 1e-3;
+  scene.materials[0].tensile_strength = 1.5e5;
+  scene.materials[0].fibres.push_back({4e6, ConstantDirection{{1, 1, 0}}, 3});
+  AddBoxSet(scene, "held", {-1, -1, -1}, {0.1, 1, 1});
+  AddBoxSet(scene, "pulled", {0.9, -1, -1}, {2, 1, 1});
+  AddMotion(scene, "held");
+  AddMotion(scene, "pulled").keyframes = {{0, {0, 0, 0}, 0}, {1, {0.4, 0, 0}, 0}};
+  Model model = *BuildModel(scene, mesh);
+  EXPECT_TRUE(model.fibrous);
+  model.fibrous = fibrous;
+  Stepper stepper(model);
+  State state = InitialState(scene, mesh, model);
+  Tearing tearing;
+  const StopFlag stop;
+  for (int step = 0; step < 100; ++step) {
+    StepReport report;
+    EXPECT_TRUE(stepper.Step(0.01 * step, 0.01 * (step + 1), stop, state, report).ok());
+    tearing.newton_iterations += report.newton_iterations;
+    tearing.break_passes += report.break_passes;
+  }
+  tearing.broken_edges = stepper.breaking()->ClientBrokenEdges();
+  return tearing;
+}
+
+TEST(TornSlab, WithFibresSolvesThatBeginWithTheStiffnessThatHelpedBeforeTakeFewerIterations) {
+  const Tearing with = TearSlab(true);
+  const Tearing without = TearSlab(false);
+  EXPECT_GT(with.break_passes, 0);
+  EXPECT_EQ(with.break_passes, without.break_passes);
+  EXPECT_EQ(with.broken_edges, without.broken_edges);
+  EXPECT_LT(with.newton_iterations, without.newton_iterations);
+}
+
 }  // namespace
 }  // namespace cleave
