@@ -79,25 +79,12 @@ class Candidates {
 
  private:
   void Keep(size_t count) {
-    if (found_.size() > count) {
-      // Bits of floats that are not negative have the order of the floats, and rounding to floats
-      // keeps the order of doubles. So none above the last key is among the nearest.
-      keys_.clear();
-      for (const Candidate& candidate : found_) keys_.push_back(KeyOf(candidate));
-      const auto last = keys_.begin() + static_cast<std::ptrdiff_t>(count) - 1;
-      std::nth_element(keys_.begin(), last, keys_.end());
-      const uint32_t bound = *last;
-      std::erase_if(found_, [&](const Candidate& candidate) { return KeyOf(candidate) > bound; });
-    }
-    std::sort(found_.begin(), found_.end());
-    if (found_.size() > count) found_.resize(count);
-  }
-  static uint32_t KeyOf(const Candidate& candidate) {
-    return std::bit_cast<uint32_t>(static_cast<float>(candidate.square));
+    const auto end = found_.begin() + static_cast<std::ptrdiff_t>(std::min(count, found_.size()));
+    std::partial_sort(found_.begin(), end, found_.end());
+    found_.erase(end, found_.end());
   }
 
   std::vector<Candidate> found_;
-  std::vector<uint32_t> keys_;
 };
 
 // A place's near ones by place: a hash table of their ranks.

@@ -107,7 +107,7 @@ bool Stencils::LostPlaces(int32_t place) const {
   return lost;
 }
 
-// Finds the weights of these, kLanes at most.
+// Finds the weights of these, four at most.
 void Stencils::Weigh(std::span<const int32_t> places) {
   StencilBatch batch;
   for (size_t lane = 0; lane < places.size(); ++lane) {
