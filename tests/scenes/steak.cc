@@ -167,7 +167,7 @@ std::vector<Criterion> SteakCriteria() {
        true,
        kAll},
       {"Strands bridge the tear", {"meat"}, bridges("meat")},
-      {"With fibres along the tear none do", {"turned"}, bridges("turned"), true},
+      {"With fibres along the tear none do", {"turned"}, bridges("turned"), true, kAll},
       {"Without fibres none do", {"iso"}, bridges("iso"), true, kAll},
       {"A piece dangles",
        {"meat"},
