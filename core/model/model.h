@@ -74,8 +74,8 @@ struct Model {
   // two of each moving collider.
   std::vector<double> masses;
   std::vector<std::unique_ptr<TetTerm>> tet_terms;
-  bool fibrous = false;  // whether fibres stiffen any tet
   std::vector<PlasticTerm*> plastic_terms;  // those of tet_terms that flow
+  bool fibrous = false;                     // whether fibres stiffen any tet
   std::vector<std::unique_ptr<NodeTerm>> node_terms;
   const ColliderTerm* colliders = nullptr;  // one of the node terms, where the scene has any
   std::optional<Vec3> gravity;              // m/s^2
