@@ -42,6 +42,34 @@ class FibreFamiliesTest : public ::testing::TestWithParam<Precision> {
     for (int i = 0; i < flat.size(); ++i) flat[i] = forces[static_cast<size_t>(i / 3)][i % 3];
     return flat;
   }
+  // Every tet its own way, some of them inside out where `share` is large.
+  NodalVector Wrung(double share) const {
+    NodalVector displacements;
+    for (const Vec3& x : mesh_.rest_positions) {
+      displacements.push_back(share * Double4{0.2 * std::sin(5 * x[1] + 3 * x[2]),
+                                              0.2 * std::cos(7 * x[0] * x[2]),
+                                              0.1 * (x[0] * x[0] - 2 * x[1]), 0});
+    }
+    return displacements;
+  }
+  // The matrix of a term, put together from the blocks of edges.
+  Eigen::MatrixXd Stiffness(TetTerm& term, const NodalVector& displacements,
+                            Curvature curvature) const {
+    EdgeBlocks blocks(EdgeBlocksSize(incidence_.edge_count()), 0.0f);
+    term.AddStiffness(displacements, curvature, blocks);
+    const auto size = static_cast<int>(3 * mesh_.node_count());
+    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+    for (size_t edge = 0; edge < incidence_.edges.size(); ++edge) {
+      const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
+      const Eigen::Matrix3d block =
+          Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
+      stiffness.block<3, 3>(i, j) -= block;
+      stiffness.block<3, 3>(j, i) -= block.transpose();
+      stiffness.block<3, 3>(i, i) += block;
+      stiffness.block<3, 3>(j, j) += block.transpose();
+    }
+    return stiffness;
+  }
   // What fibres along x have of the energy, J.
   double FibreEnergy(TetTerm& term, const NodalVector& displacements) const {
     const std::unique_ptr<TetTerm> plain = TermWith(GetParam(), {});
@@ -96,25 +124,9 @@ TEST_P(FibreFamiliesTest, ExactStiffnessIsTheForcesDerivative) {
   const std::unique_ptr<TetTerm> term = TermWith(GetParam(), directions);
   // Differences of what float has rounded say little.
   const std::unique_ptr<TetTerm> in_double = TermWith(Precision::kDouble, directions);
-  NodalVector displacements;
-  for (const Vec3& x : mesh_.rest_positions) {
-    displacements.push_back(Double4{0.2 * std::sin(5 * x[1] + 3 * x[2]),
-                                    0.2 * std::cos(7 * x[0] * x[2]), 0.1 * (x[0] * x[0] - 2 * x[1]),
-                                    0});
-  }
-  EdgeBlocks blocks(EdgeBlocksSize(incidence_.edge_count()), 0.0f);
-  term->AddStiffness(displacements, Curvature::kExact, blocks);
-  const auto size = static_cast<int>(3 * mesh_.node_count());
-  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
-  for (size_t edge = 0; edge < incidence_.edges.size(); ++edge) {
-    const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
-    const Eigen::Matrix3d block =
-        Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
-    stiffness.block<3, 3>(i, j) -= block;
-    stiffness.block<3, 3>(j, i) -= block.transpose();
-    stiffness.block<3, 3>(i, i) += block;
-    stiffness.block<3, 3>(j, j) += block.transpose();
-  }
+  const NodalVector displacements = Wrung(1);
+  const Eigen::MatrixXd stiffness = Stiffness(*term, displacements, Curvature::kExact);
+  const int size = static_cast<int>(stiffness.rows());
   const double h = 1e-5;
   for (int i = 0; i < size; ++i) {
     NodalVector up = displacements, down = displacements;
@@ -122,6 +134,27 @@ TEST_P(FibreFamiliesTest, ExactStiffnessIsTheForcesDerivative) {
     down[static_cast<size_t>(i / 3)][i % 3] -= h;
     const Eigen::VectorXd column = -(Forces(*in_double, up) - Forces(*in_double, down)) / (2 * h);
     EXPECT_NEAR((column - stiffness.col(i)).norm(), 0, 3e-6 * stiffness.norm()) << i;
+  }
+}
+
+TEST_P(FibreFamiliesTest, ProjectedStiffnessOfFibresHasNoNegativeEigenvalue) {
+  const std::vector<Vec3> directions = {{1, 0, 0}, {0.6, 0.8, 0}, {0, 0.6, -0.8}};
+  const std::unique_ptr<TetTerm> term = TermWith(GetParam(), directions);
+  const std::unique_ptr<TetTerm> bare = TermWith(GetParam(), {});
+  for (const double share : {1.0, 4.0}) {  // some fibres pressed; then the rest stretched or turned over
+    const NodalVector displacements = Wrung(share);
+    EXPECT_EQ(term->ChooseBranches(displacements, BranchChoice::kStart), share > 1);
+    const auto least_over_largest = [&](Curvature curvature) {
+      const Eigen::MatrixXd of_fibres =
+          Stiffness(*term, displacements, curvature) - Stiffness(*bare, displacements, curvature);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(of_fibres);
+      return solver.eigenvalues()(0) / solver.eigenvalues().tail(1)(0);
+    };
+    // Blocks are stored in float.
+    EXPECT_GE(least_over_largest(Curvature::kSemidefinite), -1e-6) << share;
+    if (share == 1) {
+      EXPECT_LT(least_over_largest(Curvature::kExact), -1e-3);
+    }
   }
 }
 

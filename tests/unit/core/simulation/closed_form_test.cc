@@ -1,8 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 
+#include "absl/strings/str_cat.h"
+#include "core/mesh/procedural.h"
 #include "core/simulation/simulation.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
 #include "tests/unit/core/simulation/run_frames.h"
@@ -97,6 +102,48 @@ TEST(ClosedForm, APatchUnderAnAffineBoundaryIsAffineInside) {
       EXPECT_NEAR(simulation->positions()[node][axis],
                   mesh.rest_positions[node][axis] * (1 + stretch[axis]), 1e-12);
     }
+  }
+}
+
+// Stretched, sheared and turned, and no two tets alike; every node of the boundary is given.
+TEST(ClosedForm, AnIrregularPatchUnderAnyAffineBoundaryIsAffineInside) {
+  BoxMesh box;
+  box.size = {1, 1, 1};
+  box.resolution.cell_size = 0.3;
+  const TetMesh mesh = *BuildMesh(box);
+  const double gradient[3][3] = {{1.1, 0.25, -0.1}, {0.05, 0.9, 0.2}, {-0.15, 0.1, 1.2}};
+  const auto mapped = [&gradient](const Vec3& x) {
+    Vec3 y{0, 0, 0};
+    for (size_t i = 0; i < 3; ++i)
+      for (size_t j = 0; j < 3; ++j) y[i] += gradient[i][j] * x[j];
+    return y;
+  };
+  for (const ElasticLaw law : {ElasticLaw::kStableNeoHookean, ElasticLaw::kInvertibleNeoHookean,
+                               ElasticLaw::kCorotatedLinear, ElasticLaw::kStVenantKirchhoff}) {
+    Scene scene = TightScene(1e5, 0.3, 1e-6, 1);
+    scene.materials[0].law = law;
+    scene.materials[0].fibres = {{2e5, ConstantDirection{{1, 2, 3}}, 1}};
+    for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
+      const Vec3& x = mesh.rest_positions[node];
+      if (std::none_of(x.begin(), x.end(), [](double c) { return c < 1e-9 || c > 1 - 1e-9; }))
+        continue;
+      const Vec3 y = mapped(x);
+      NodeSet& set = scene.node_sets.emplace_back();
+      set.name = absl::StrCat("node ", node);
+      set.select.push_back(IdSelector{{static_cast<int64_t>(node)}});
+      AddMotion(scene, set.name).keyframes = {{0, {0, 0, 0}, 0},
+                                              {1, {y[0] - x[0], y[1] - x[1], y[2] - x[2]}, 0}};
+    }
+    EXPECT_LT(scene.motions.size() + 10, mesh.rest_positions.size());
+    auto simulation = MustCreate(scene, mesh);
+    RunFrames(*simulation, 3);
+    double farthest = 0;
+    for (size_t node = 0; node < mesh.rest_positions.size(); ++node) {
+      const Vec3 y = mapped(mesh.rest_positions[node]);
+      for (size_t axis = 0; axis < 3; ++axis)
+        farthest = std::max(farthest, std::abs(simulation->positions()[node][axis] - y[axis]));
+    }
+    EXPECT_LT(farthest, 1e-12) << static_cast<int>(law);
   }
 }
 
