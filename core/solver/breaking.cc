@@ -293,6 +293,7 @@ std::vector<int32_t> Breaking::ClientBrokenEdges() const {
 int64_t Breaking::bytes() const {
   return static_cast<int64_t>(positions_.size() * sizeof(Vec3) +
                               stresses_.size() * sizeof(Eigen::Matrix3d) +
+                              edge_stresses_.size() * sizeof(double) +
                               plastic_record_of_.size() * sizeof(int32_t) +
                               plastic_tets_.size() * sizeof(PlasticTet) + mark_.size() +
                               solid_factors_.size() * sizeof(double)) +

@@ -236,7 +236,10 @@ TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
   EXPECT_TRUE(minimal.node_terms.empty());
   EXPECT_TRUE(minimal.releases.empty());
   EXPECT_EQ(minimal.tet_terms.size(), 1u);
-  EXPECT_TRUE(minimal.node_terms.empty());
+  EXPECT_TRUE(minimal.plastic_terms.empty());
+  EXPECT_FALSE(minimal.fibrous);
+  EXPECT_FALSE(minimal.damping.has_value());
+  EXPECT_FALSE(minimal.sleep.has_value());
   EXPECT_EQ(minimal.colliders, nullptr);
   double mass = 0;
   for (const double of_node : minimal.masses) mass += of_node;
@@ -247,6 +250,12 @@ TEST(BuildModel, MakesOnlyWhatTheSceneAsksFor) {
   ASSERT_TRUE(breaking.fracture.has_value());
   EXPECT_EQ(breaking.fracture->edge_thresholds, std::vector<double>{1e5});
   EXPECT_TRUE(breaking.fracture->compressive_thresholds.empty());
+  EXPECT_EQ(breaking.fracture->edge_projected, nullptr);
+  EXPECT_FALSE(breaking.fracture->impurities.has_value());
+  EXPECT_FALSE(breaking.fracture->fatigue.has_value());
+  EXPECT_FALSE(breaking.fracture->strands.has_value());
+  EXPECT_EQ(breaking.tet_terms.size(), 1u);
+  EXPECT_EQ(breaking.tet_terms[0]->bytes(), minimal.tet_terms[0]->bytes());
   // Client edge ids are a renumbering that leads to the same nodes.
   const Incidence incidence = BuildIncidence(mesh);
   for (size_t edge = 0; edge < breaking.incidence->edges.size(); ++edge) {
