@@ -13,6 +13,8 @@ namespace {
 
 TEST(Column, BreaksAlongItsSheetWithoutNewUnknowns) { ExpectCriteria("column"); }
 
+TEST(FullColumn, BreaksAlongItsSheetWithoutNewUnknowns) { ExpectCriteriaInFull("column"); }
+
 // Times are printed and not asserted.
 TEST(FullColumn, HasTheSameUnknownsInEveryFrame) {
   std::printf("threads  tets  unknowns first/last  s/frame  assembly  linear  fracture\n");

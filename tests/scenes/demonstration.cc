@@ -34,16 +34,22 @@ double Run::SecondsPerFrame() const {
   return reports.empty() ? 0 : seconds / static_cast<double>(reports.size());
 }
 
-double Run::PeakForce(const Demonstration& demonstration) const {
-  double peak = 0;
+std::vector<double> Run::PullForces(const Demonstration& demonstration) const {
+  std::vector<double> forces;
   for (const FrameReport& report : reports) {
-    if (demonstration.pull_motion >= report.motion_forces.size()) continue;
+    if (demonstration.pull_motion >= report.motion_forces.size()) return {};
     const Vec3& force = report.motion_forces[demonstration.pull_motion];
     double along = 0;
     for (size_t axis = 0; axis < 3; ++axis)
       along += force[axis] * demonstration.pull_direction[axis];
-    peak = std::max(peak, along);
+    forces.push_back(along);
   }
+  return forces;
+}
+
+double Run::PeakForce(const Demonstration& demonstration) const {
+  double peak = 0;
+  for (const double force : PullForces(demonstration)) peak = std::max(peak, force);
   return peak;
 }
 

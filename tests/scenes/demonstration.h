@@ -45,6 +45,8 @@ struct Run {
   std::vector<double> plastic_strains = {};
 
   double SecondsPerFrame() const;
+  // N, along the pull, a report each; empty where nothing is pulled.
+  std::vector<double> PullForces(const Demonstration& demonstration) const;
   double PeakForce(const Demonstration& demonstration) const;  // N, along the pull
 };
 

@@ -63,7 +63,7 @@ std::span<const DemonstrationKind> DemonstrationKinds() {
       {"locality",
        "Two slabs, one with an impure node",
        "Fig. 5, sec. 5",
-       {"without", "with"},
+       {"without", "with", "shuffled"},
        MakeLocality,
        MeasureLocality,
        LocalityCriteria(),

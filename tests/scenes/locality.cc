@@ -66,8 +66,9 @@ absl::StatusOr<Demonstration> MakeLocality(const Setting& setting) {
   made.in_map.assign(2 * nodes, 0);
   made.in_map[middle] = 1;
   Impurities impurities;
-  impurities.potency = setting.variant == "with" ? 10 : 0;
-  impurities.map = MapOf(made.in_map);
+  impurities.potency = setting.variant == "without" ? 0 : 10;
+  impurities.map =
+      MapOf(setting.variant == "shuffled" ? Shuffled(made.in_map, setting.seed) : made.in_map);
   scene.impurities = impurities;
   const auto left = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
   const auto right = NodesWhere(made.mesh, [](const Vec3& x) { return x[0] > kLength - 1e-9; });
@@ -87,7 +88,6 @@ absl::StatusOr<Demonstration> MakeLocality(const Setting& setting) {
 
 Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run) {
-  if (demonstration.scene.impurities->potency == 0) return {};
   Demonstration pure = demonstration;
   pure.scene.impurities->potency = 0;
   const absl::StatusOr<Run> without = RunDemonstration(pure);
@@ -99,7 +99,8 @@ Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& inc
   metrics["own_edges"] = change.broken_edges_are_the_nodes_own ? 1 : 0;
   metrics["largest_change"] = change.largest;
   metrics["share_within_three_rings"] = change.share_within_three_rings;
-  if (change.largest > 0) metrics["change_elsewhere"] = change.largest_elsewhere / change.largest;
+  const double largest = std::max(change.largest, change.largest_elsewhere);
+  metrics["change_elsewhere"] = largest > 0 ? change.largest_elsewhere / largest : 0;
   return metrics;
 }
 
@@ -159,23 +160,32 @@ LocalityOfChange CompareRuns(const Demonstration& with_impurity, const Incidence
 }
 
 std::vector<Criterion> LocalityCriteria() {
+  const auto waits = [](const std::string& variant) -> std::vector<Condition> {
+    return {{"first frame that differs", Of(variant, "first_difference"), Relation::kAbove, 2},
+            {"edges that differ", Of(variant, "new_broken_edges"), Relation::kAbove, 0},
+            {"1 where all of them are the node's own", Of(variant, "own_edges"), Relation::kAtLeast,
+             1}};
+  };
+  const auto stays = [](const std::string& variant) -> std::vector<Condition> {
+    return {{"largest change of velocity, m/s", Of(variant, "largest_change"), Relation::kAbove, 0},
+            {"share within three edges of the node", Of(variant, "share_within_three_rings"),
+             Relation::kAbove, 0.8},
+            {"largest change in the other slab, of the largest", Of(variant, "change_elsewhere"),
+             Relation::kBelow, 1e-6}};
+  };
   return {
       {"Until an edge of the node breaks, nothing differs in any bit",
        {"with"},
-       {{"first frame that differs", Of("with", "first_difference"), Relation::kAbove, 2},
-        {"edges that differ", Of("with", "new_broken_edges"), Relation::kAbove, 0},
-        {"1 where all of them are the node's own", Of("with", "own_edges"), Relation::kAtLeast, 1}},
+       waits("with"),
        false,
        kAll},
-      {"What changes then lies round the node",
-       {"with"},
-       {{"largest change of velocity, m/s", Of("with", "largest_change"), Relation::kAbove, 0},
-        {"share within three edges of the node", Of("with", "share_within_three_rings"),
-         Relation::kAbove, 0.8},
-        {"largest change in the other slab, of the largest", Of("with", "change_elsewhere"),
-         Relation::kBelow, 1e-6}},
-       false,
-       kAll},
+      {"What changes then lies round the node", {"with"}, stays("with"), false, kAll},
+      {"Without an impurity nothing differs at all", {"without"}, waits("without"), true, kAll},
+      {"Where another node is impure, other edges break", {"shuffled"}, waits("shuffled"), true},
+      {"Where another node is impure, what changes lies round that one",
+       {"shuffled"},
+       stays("shuffled"),
+       true},
   };
 }
 

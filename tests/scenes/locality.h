@@ -8,11 +8,12 @@
 namespace cleave {
 
 // Two slabs side by side in one mesh, pulled alike. Variants: "without" impurities; "with" one, on
-// a single node in the middle of the first slab.
+// a single node in the middle of the first slab; "shuffled", on some other node.
 absl::StatusOr<Demonstration> MakeLocality(const Setting& setting);
 
-// Of "with", which it holds against a run without: the numbers of LocalityOfChange; own_edges 1 or
-// 0, change_elsewhere over the largest.
+// Against a run without impurities: the numbers of LocalityOfChange, as if the node in the middle
+// were the impure one; own_edges 1 or 0, change_elsewhere over the largest. Where no bit differs
+// before the first break, no node is accelerated more than it is without.
 Metrics MeasureLocality(const Demonstration& demonstration, const Incidence& incidence,
                         const Run& run);
 

@@ -5,6 +5,8 @@
 //                [--picture FILE.png] [--sheet FILE.png] [--strain] [--width PIXELS]
 //                [--azimuth DEGREES] [--elevation DEGREES] [--frame N]
 //                [--change FILE.png]: of locality with, where it parts from locality without
+//                [--forces FILE.svg [--beside VARIANT,VARIANT...]]: force over displacement of
+//                what is pulled, and of other variants of the same seed
 //
 //   scene_runner NAME --judge < LINES: holds such lines against the scene's criteria
 //   scene_runner --list: scenes, variants and criteria as JSON
@@ -20,12 +22,17 @@
 #include <iterator>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "client/io/plot/force_plot.h"
 #include "client/io/preview/preview.h"
 #include "client/io/preview/scene_look.h"
+#include "client/io/series/write_aside.h"
+#include "core/base/status.h"
 #include "core/picture/impurity_picture.h"
 #include "tests/scenes/demonstration.h"
 #include "tests/scenes/locality.h"
@@ -41,6 +48,8 @@ struct Arguments {
   std::string picture;
   std::string sheet;
   std::string change;
+  std::string forces;
+  std::string beside;  // variants, parted by commas
   bool strain = false;
   int width = 800;  // pixels
   CameraOptions camera;
@@ -98,6 +107,41 @@ absl::Status DrawChange(const Arguments& arguments, const Outcome& with) {
   return WritePng(arguments.change, *image);
 }
 
+absl::StatusOr<ForceCurve> ForcesOf(const std::string& variant, const Outcome& outcome) {
+  const Demonstration& made = outcome.demonstration;
+  ForceCurve curve{variant, {}, outcome.run.PullForces(made)};
+  if (curve.force.empty() || made.pulled.empty())
+    return absl::InvalidArgumentError(absl::StrCat("nothing pulls ", variant));
+  for (size_t k = 0; k < curve.force.size(); ++k) {
+    double way = 0;
+    for (const int32_t node : made.pulled) {
+      const Vec3& now = outcome.run.frames[k + 1].positions[static_cast<size_t>(node)];
+      const Vec3& rest = made.mesh.rest_positions[static_cast<size_t>(node)];
+      for (size_t axis = 0; axis < 3; ++axis)
+        way += (now[axis] - rest[axis]) * made.pull_direction[axis];
+    }
+    curve.displacement.push_back(way / static_cast<double>(made.pulled.size()));
+  }
+  return curve;
+}
+
+absl::Status DrawForces(const Arguments& arguments, const Outcome& outcome) {
+  std::vector<ForceCurve> curves;
+  CLEAVE_ASSIGN_OR_RETURN(ForceCurve first, ForcesOf(arguments.setting.variant, outcome));
+  curves.push_back(std::move(first));
+  for (const auto variant : absl::StrSplit(arguments.beside, ',', absl::SkipEmpty())) {
+    Setting setting = arguments.setting;
+    setting.variant = std::string(variant);
+    CLEAVE_ASSIGN_OR_RETURN(const Outcome other,
+                            Demonstrate(arguments.name, setting, arguments.threads));
+    CLEAVE_ASSIGN_OR_RETURN(ForceCurve curve, ForcesOf(setting.variant, other));
+    curves.push_back(std::move(curve));
+  }
+  CLEAVE_ASSIGN_OR_RETURN(const auto* kind, FindDemonstration(arguments.name));
+  CLEAVE_ASSIGN_OR_RETURN(const std::string svg, EncodeForcePlot(curves, kind->title));
+  return WriteAside(arguments.forces, svg);
+}
+
 absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   const std::vector<Frame>& frames = outcome.run.frames;
   FrameSource source;
@@ -112,6 +156,9 @@ absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
   ApplySceneLook(outcome.demonstration.scene, outcome.demonstration.mesh, options);
   if (!arguments.change.empty()) {
     if (absl::Status drawn = DrawChange(arguments, outcome); !drawn.ok()) return drawn;
+  }
+  if (!arguments.forces.empty()) {
+    if (absl::Status drawn = DrawForces(arguments, outcome); !drawn.ok()) return drawn;
   }
   if (arguments.strain) options.color_by = ColorBy::kStrain;
   if (!arguments.picture.empty()) {
@@ -136,10 +183,12 @@ absl::Status Draw(const Arguments& arguments, const Outcome& outcome) {
 absl::Status ReadOption(const std::string& option, const std::string& value, Arguments& arguments) {
   const std::map<std::string, std::string*> words = {{"--picture", &arguments.picture},
                                                      {"--sheet", &arguments.sheet},
-                                                     {"--change", &arguments.change}};
+                                                     {"--change", &arguments.change},
+                                                     {"--forces", &arguments.forces},
+                                                     {"--beside", &arguments.beside}};
   if (const auto word = words.find(option); word != words.end()) {
     *word->second = value;
-    return value.empty() ? absl::InvalidArgumentError(absl::StrCat(option, " needs a file"))
+    return value.empty() ? absl::InvalidArgumentError(absl::StrCat(option, " needs a value"))
                          : absl::OkStatus();
   }
   bool read = false;

@@ -1,4 +1,6 @@
+#include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 
 #include "core/base/status.h"
@@ -64,6 +66,20 @@ double BakeSeconds(const Scene& scene, const TetMesh& mesh, const Incidence& inc
   return least;
 }
 
+// How fast one thread reads so many bytes over and over, bytes/s: the best of five.
+double ReadingRate(int64_t bytes) {
+  const Eigen::ArrayXf block = Eigen::ArrayXf::Ones(bytes / static_cast<int64_t>(sizeof(float)));
+  constexpr int kRounds = 100;
+  double least = 1e300;
+  float sum = 0;
+  for (int round = 0; round < 5; ++round) {
+    const Stopwatch watch;
+    for (int k = 0; k < kRounds; ++k) sum += block.sum();
+    least = std::min(least, watch.Seconds());
+  }
+  return sum > 0 ? kRounds * static_cast<double>(bytes) / least : 0;
+}
+
 }  // namespace
 
 absl::Status PrintColumn() {
@@ -81,11 +97,12 @@ absl::Status PrintColumn() {
   CLEAVE_ASSIGN_OR_RETURN(const std::vector<StepCost> costs, MeasureSteps(mesh, cases, 2, 5));
   const Incidence incidence = BuildIncidence(mesh);
   const int64_t edges = incidence.edge_count();
+  const int64_t matrix_bytes = 2 * (36 + 4) * edges;
   std::printf(
       "\nA step of 1/60 s of a column of %lld tets, %lld nodes, %lld edges, E = 1e6 Pa, linear "
       "solves\nto 1e-6. A linear iteration reads %.1f MB of matrix.\n\n",
       static_cast<long long>(mesh.tet_count()), static_cast<long long>(mesh.node_count()),
-      static_cast<long long>(edges), 1e-6 * 2 * (36 + 4) * static_cast<double>(edges));
+      static_cast<long long>(edges), 1e-6 * static_cast<double>(matrix_bytes));
   std::printf("%-9s %7s %9s %9s %9s %9s %7s %7s %8s %7s\n", "precision", "threads", "a step s",
               "assembly", "linear", "fracture", "newton", "cg", "cg us", "GB/s");
   for (size_t k = 0; k < cases.size(); ++k) {
@@ -96,8 +113,12 @@ absl::Status PrintColumn() {
                 cases[k].threads, cost.total / steps, cost.assembly / steps, cost.linear / steps,
                 cost.fracture / steps, cost.newton_iterations / steps,
                 cost.linear_iterations / steps, 1e6 * iteration,
-                1e-9 * 2 * (36 + 4) * static_cast<double>(edges) / iteration);
+                1e-9 * static_cast<double>(matrix_bytes) / iteration);
   }
+  std::printf(
+      "\nThat much memory is read, and nothing done with it, at %.1f GB/s by one thread: what the\n"
+      "linear iterations, most of a step, are bound by.\n",
+      1e-9 * ReadingRate(matrix_bytes));
   std::printf("\nEmbedding 16 cuts, each a sheet right through it: %.4f s.\n",
               BakeSeconds(CutColumn(), mesh, incidence));
   return absl::OkStatus();
