@@ -1,7 +1,7 @@
 #ifndef CLEAVE_CLIENT_CLI_PROGRAM_H_
 #define CLEAVE_CLIENT_CLI_PROGRAM_H_
 
-#include <CLI/App.hpp>
+#include <CLI/CLI.hpp>  // not App.hpp alone: verbs are apps, and those need what it only declares
 #include <functional>
 
 #include "absl/status/status.h"

@@ -19,14 +19,14 @@
 namespace cleave {
 namespace {
 
-constexpr int64_t kFrames = 150;
+constexpr int64_t kRunFrames = 150;
 
 // What a run gives that nothing disturbs.
 const std::vector<std::string>& UndisturbedFrames() {
   static const std::vector<std::string> frames = [] {
     TestServer server;
     const std::unique_ptr<Client> client = server.Connect();
-    Create(*client, "undisturbed", BreakingBar(kFrames));
+    Create(*client, "undisturbed", BreakingBar(kRunFrames));
     return RunToEnd(*client, "undisturbed");
   }();
   return frames;
@@ -55,7 +55,7 @@ void Take(FrameStream& stream, int64_t last, std::vector<std::string>& frames,
 }
 
 TEST(CrashTest, TheRunThatIsComparedWithBreaksTheBar) {
-  ASSERT_EQ(UndisturbedFrames().size(), static_cast<size_t>(kFrames + 1));
+  ASSERT_EQ(UndisturbedFrames().size(), static_cast<size_t>(kRunFrames + 1));
   const absl::StatusOr<FrameHeader> last = ParseFrameHeader(UndisturbedFrames().back());
   ASSERT_TRUE(last.ok());
   EXPECT_GT(last->broken_edges, 0u);
@@ -66,7 +66,7 @@ TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndNoEventAndRepeatsNone) {
   const std::vector<std::string>& expected = UndisturbedFrames();
   TestServer server;
   const std::unique_ptr<Client> client = server.Connect();
-  Create(*client, "bar", BreakingBar(kFrames));
+  Create(*client, "bar", BreakingBar(kRunFrames));
   ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
   FrameStreamOptions options;
   options.session = "sessions/bar";
@@ -78,9 +78,9 @@ TEST(CrashTest, AWorkerKilledTwiceMidRunLosesNoFrameAndNoEventAndRepeatsNone) {
     Take(stream, frame, frames, &told);
     if (HasFatalFailure()) return;
     ASSERT_EQ(kill(WorkerOf(server, "bar"), SIGKILL), 0);
-    ASSERT_LT(client->GetSession("sessions/bar")->head_frame(), kFrames);
+    ASSERT_LT(client->GetSession("sessions/bar")->head_frame(), kRunFrames);
   }
-  Take(stream, kFrames, frames, &told);
+  Take(stream, kRunFrames, frames, &told);
   if (HasFatalFailure()) return;
   EXPECT_FALSE((*stream.Next()).has_value());
   EXPECT_EQ(frames, expected);
@@ -92,7 +92,7 @@ TEST(CrashTest, AGatewayKilledMidStreamGoesOnWhereItWasWhenItIsBack) {
   const std::vector<std::string>& expected = UndisturbedFrames();
   TestServer server;
   const std::unique_ptr<Client> client = server.Connect();
-  const v1::Session created = Create(*client, "bar", BreakingBar(kFrames));
+  const v1::Session created = Create(*client, "bar", BreakingBar(kRunFrames));
   ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
   FrameStreamOptions options;
   options.session = "sessions/bar";
@@ -105,10 +105,10 @@ TEST(CrashTest, AGatewayKilledMidStreamGoesOnWhereItWasWhenItIsBack) {
   server.Kill();
   // A line a frame: the run was not over yet, or this test would show nothing.
   const std::string reports = ReadBytes(server.session_directory("bar") + "/reports.jsonl");
-  ASSERT_LT(std::count(reports.begin(), reports.end(), '\n'), kFrames);
+  ASSERT_LT(std::count(reports.begin(), reports.end(), '\n'), kRunFrames);
   server.Start();
   // The same stream: the client goes on behind the last frame that it has.
-  Take(stream, kFrames, frames, &told);
+  Take(stream, kRunFrames, frames, &told);
   if (HasFatalFailure()) return;
   EXPECT_FALSE((*stream.Next()).has_value());
   EXPECT_EQ(frames, expected);
@@ -121,7 +121,7 @@ TEST(CrashTest, AServerThatIsStoppedMidRunSavesAndGoesOnByItself) {
   TestServer server;
   {
     const std::unique_ptr<Client> client = server.Connect();
-    Create(*client, "bar", BreakingBar(kFrames));
+    Create(*client, "bar", BreakingBar(kRunFrames));
     ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
     WaitFor(*client, "bar", [](const v1::Session& session) { return session.head_frame() >= 8; });
   }
@@ -136,7 +136,7 @@ TEST(CrashTest, APausedSessionStaysPausedAcrossARestartOfTheServer) {
   int64_t head = 0;
   {
     const std::unique_ptr<Client> client = server.Connect();
-    Create(*client, "bar", BreakingBar(kFrames));
+    Create(*client, "bar", BreakingBar(kRunFrames));
     ASSERT_TRUE(client->RunSession("sessions/bar", {}).ok());
     WaitFor(*client, "bar", [](const v1::Session& session) { return session.head_frame() >= 5; });
     const absl::StatusOr<v1::Session> paused = client->PauseSession("sessions/bar", false);
@@ -175,7 +175,7 @@ TEST(CrashTest, AWorkerAloneRunsADirectoryToItsEndAcrossTerminations) {
   TestServer server;
   {
     const std::unique_ptr<Client> client = server.Connect();
-    Create(*client, "bar", BreakingBar(kFrames));
+    Create(*client, "bar", BreakingBar(kRunFrames));
     WaitFor(*client, "bar", Rests);
   }
   ASSERT_EQ(server.Stop(), 0);
@@ -205,7 +205,7 @@ TEST(CrashTest, ADamagedCheckpointAndATornJournalOnlyCostTime) {
   TestServer server;
   {
     const std::unique_ptr<Client> client = server.Connect();
-    Create(*client, "bar", BreakingBar(kFrames));
+    Create(*client, "bar", BreakingBar(kRunFrames));
     v1::RunGoal goal;
     goal.set_until_frame(20);
     ASSERT_TRUE(client->RunSession("sessions/bar", goal).ok());

@@ -24,10 +24,10 @@ LameConstants<T> ReferenceLame() {
 }
 
 template <typename Law>
-class ElasticLaw : public ::testing::Test {};
+class IsotropicLaw : public ::testing::Test {};
 using Laws =
     ::testing::Types<StableNeoHookean, InvertibleNeoHookean, CorotatedLinear, StVenantKirchhoff>;
-TYPED_TEST_SUITE(ElasticLaw, Laws);
+TYPED_TEST_SUITE(IsotropicLaw, Laws);
 
 // Singular values on both sides of inversion, none near s_i + s_j = 0 or a kink of the extended
 // logarithm's third derivative.
@@ -36,7 +36,7 @@ const Eigen::Vector3d kStretches[] = {
     {0.5, 0.5, 0.5},    {1.3, 0.8, -0.3},         {1.1, 0.7, 0.05}, {0.08, 0.06, 0.03},
     {1.2, 0.09, -0.04}, {1.0 + 1e-9, 1, 1 - 1e-9}};
 
-TYPED_TEST(ElasticLaw, StressIsTheDerivativeOfEnergy) {
+TYPED_TEST(IsotropicLaw, StressIsTheDerivativeOfEnergy) {
   std::mt19937 random(1);
   const auto lame = ReferenceLame();
   for (const Eigen::Vector3d& stretches : kStretches) {
@@ -61,7 +61,7 @@ TYPED_TEST(ElasticLaw, StressIsTheDerivativeOfEnergy) {
   }
 }
 
-TYPED_TEST(ElasticLaw, SecondDerivativeIsTheDerivativeOfStress) {
+TYPED_TEST(IsotropicLaw, SecondDerivativeIsTheDerivativeOfStress) {
   std::mt19937 random(2);
   const auto lame = ReferenceLame();
   for (const Eigen::Vector3d& stretches : kStretches) {
@@ -102,7 +102,7 @@ using LawsInBothPrecisions =
                      std::pair<StVenantKirchhoff, Float8>>;
 TYPED_TEST_SUITE(ElasticLawInBothPrecisions, LawsInBothPrecisions);
 
-TYPED_TEST(ElasticLaw, FloatHasTheDigitsOfFloat) {
+TYPED_TEST(IsotropicLaw, FloatHasTheDigitsOfFloat) {
   std::mt19937 random(6);
   const auto lame = ReferenceLame();
   const auto narrow = ReferenceLame<Float8>();

@@ -1,4 +1,4 @@
-// The budget of energy: what comes in from outside is what the body holds more and what was taken
+// The ledger of energy: what comes in from outside is what the body holds more and what was taken
 // out of it by name, and nothing is created.
 
 #include <gtest/gtest.h>
@@ -16,17 +16,17 @@
 namespace cleave {
 namespace {
 
-constexpr double kTolerance = 1e-4;  // of the largest energy in the budget so far
+constexpr double kTolerance = 1e-4;  // of the largest energy in the ledger so far
 
-struct Budget {
+struct Ledger {
   FrameReport last;
-  double largest = 0;          // J, of any energy in the budget so far
+  double largest = 0;          // J, of any energy in the ledger so far
   double most_in_contact = 0;  // J
 };
 
-// Runs the scene and holds every frame's budget to the tolerance.
-Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic_energy = 0) {
-  Budget budget;
+// Runs the scene and holds every frame's ledger to the tolerance.
+Ledger MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic_energy = 0) {
+  Ledger ledger;
   const auto simulation = *Simulation::Create(scene, mesh, Simulation::Options{});
   const StopFlag stop;
   double dissipated = 0;
@@ -39,22 +39,22 @@ Budget MustClose(const Scene& scene, const TetMesh& mesh, double initial_kinetic
                          report->friction_dissipation + report->damping_dissipation +
                          report->integration_dissipation;
     for (const double energy : {report->external_work, held, taken, initial_kinetic_energy})
-      budget.largest = std::max(budget.largest, std::abs(energy));
+      ledger.largest = std::max(ledger.largest, std::abs(energy));
     EXPECT_NEAR(report->external_work + initial_kinetic_energy, held + taken,
-                kTolerance * budget.largest)
+                kTolerance * ledger.largest)
         << "frame " << frame;
-    EXPECT_GE(taken, dissipated - kTolerance * budget.largest) << "frame " << frame;
-    EXPECT_LE(held, report->external_work + initial_kinetic_energy + kTolerance * budget.largest);
+    EXPECT_GE(taken, dissipated - kTolerance * ledger.largest) << "frame " << frame;
+    EXPECT_LE(held, report->external_work + initial_kinetic_energy + kTolerance * ledger.largest);
     dissipated = taken;
     // What is lost to one thing never comes back.
-    EXPECT_GE(report->fracture_energy, budget.last.fracture_energy) << "frame " << frame;
-    EXPECT_GE(report->plastic_work, budget.last.plastic_work) << "frame " << frame;
-    EXPECT_GE(report->friction_dissipation, budget.last.friction_dissipation) << "frame " << frame;
-    EXPECT_GE(report->damping_dissipation, budget.last.damping_dissipation) << "frame " << frame;
-    budget.most_in_contact = std::max(budget.most_in_contact, report->contact_energy);
-    budget.last = *report;
+    EXPECT_GE(report->fracture_energy, ledger.last.fracture_energy) << "frame " << frame;
+    EXPECT_GE(report->plastic_work, ledger.last.plastic_work) << "frame " << frame;
+    EXPECT_GE(report->friction_dissipation, ledger.last.friction_dissipation) << "frame " << frame;
+    EXPECT_GE(report->damping_dissipation, ledger.last.damping_dissipation) << "frame " << frame;
+    ledger.most_in_contact = std::max(ledger.most_in_contact, report->contact_energy);
+    ledger.last = *report;
   }
-  return budget;
+  return ledger;
 }
 
 // A bar along x, held at its left end.
@@ -76,8 +76,8 @@ const TetMesh& BarMesh() {
 TEST(EnergyBudget, ClosesForABarThatFallsOnItsEndAndSwings) {
   Scene scene = Bar(0.02, 60);
   scene.gravity = Vec3{0, 0, -9.81};
-  const Budget budget = MustClose(scene, BarMesh());
-  EXPECT_GT(budget.last.integration_dissipation, 0.01 * budget.largest);
+  const Ledger ledger = MustClose(scene, BarMesh());
+  EXPECT_GT(ledger.last.integration_dissipation, 0.01 * ledger.largest);
 }
 
 TEST(EnergyBudget, ClosesForEveryElasticLawAndFibres) {
@@ -100,9 +100,9 @@ TEST(EnergyBudget, ClosesUnderLoadsThatComeAndGo) {
     scene.loads.push_back({"all", SurfacePressure{-5e3}, {{0.1, 0}, {0.2, 1}}, {}});
     if (breaks) scene.materials[0].tensile_strength = 1.1e4;
     scene.motions[0].release = Release{.time = 0.2};
-    const Budget budget = MustClose(scene, BarMesh());
-    EXPECT_EQ(budget.last.broken_edges > 0, breaks);
-    EXPECT_GT(budget.last.external_work, 0.9 * budget.largest);
+    const Ledger ledger = MustClose(scene, BarMesh());
+    EXPECT_EQ(ledger.last.broken_edges > 0, breaks);
+    EXPECT_GT(ledger.last.external_work, 0.9 * ledger.largest);
   }
 }
 
@@ -112,8 +112,8 @@ TEST(EnergyBudget, SmallerStepsLoseLessToIntegration) {
     const int steps = k == 0 ? 1 : 4;
     Scene scene = Bar(0.02 / steps, 40 * steps);
     scene.gravity = Vec3{0, 0, -9.81};
-    const Budget budget = MustClose(scene, BarMesh());
-    lost[k] = budget.last.integration_dissipation / budget.largest;
+    const Ledger ledger = MustClose(scene, BarMesh());
+    lost[k] = ledger.last.integration_dissipation / ledger.largest;
   }
   EXPECT_LT(lost[1], 0.5 * lost[0]);
 }
@@ -129,9 +129,9 @@ TEST(EnergyBudget, ClosesForADampedBarThatSwingsAndIsPulledApart) {
       if (breaks) scene.materials[0].tensile_strength = 1e4;
       AddMotion(scene, "right").keyframes = {{0, {0, 0, 0}, 0}, {1, {3, 0, 0}, 0}};
       if (!breaks) scene.motions[1].release = Release{.time = 0.05};
-      const Budget budget = MustClose(scene, BarMesh());
-      EXPECT_EQ(budget.last.fragments > 1, breaks);
-      EXPECT_GT(budget.last.damping_dissipation, 0.02 * budget.largest);
+      const Ledger ledger = MustClose(scene, BarMesh());
+      EXPECT_EQ(ledger.last.fragments > 1, breaks);
+      EXPECT_GT(ledger.last.damping_dissipation, 0.02 * ledger.largest);
     }
   }
 }
@@ -159,9 +159,9 @@ TEST(EnergyBudget, ClosesForABarThatIsPulledApart) {
   scene.gravity = Vec3{0, 0, -9.81};
   scene.materials[0].tensile_strength = 1e4;
   AddMotion(scene, "right").keyframes = {{0, {0, 0, 0}, 0}, {1, {3, 0, 0}, 0}};
-  const Budget budget = MustClose(scene, BarMesh());
-  EXPECT_GT(budget.last.fragments, 1);
-  EXPECT_GT(budget.last.fracture_energy, 0.01 * budget.largest);
+  const Ledger ledger = MustClose(scene, BarMesh());
+  EXPECT_GT(ledger.last.fragments, 1);
+  EXPECT_GT(ledger.last.fracture_energy, 0.01 * ledger.largest);
 }
 
 TEST(EnergyBudget, ClosesForADuctileBarWithFibres) {
@@ -170,8 +170,8 @@ TEST(EnergyBudget, ClosesForADuctileBarWithFibres) {
     scene.timing.frame_count = 12;
     if (viscous) scene.materials[0].plasticity->flow_rate = 20;
     scene.materials[0].fibres.push_back({5e5, ConstantDirection{{1, 1, 0}}});
-    const Budget budget = MustClose(scene, TwistedBarMesh());
-    EXPECT_GT(budget.last.plastic_work, 0.05 * budget.largest);
+    const Ledger ledger = MustClose(scene, TwistedBarMesh());
+    EXPECT_GT(ledger.last.plastic_work, 0.05 * ledger.largest);
   }
 }
 
@@ -202,13 +202,13 @@ TEST(EnergyBudget, ClosesWithEveryPartAtOnce) {
         {"all", SurfacePressure{3e3}, {{0, 0}, {0.05, 1}}, Release{.time = 0.15}});
     scene.loads.push_back(
         {"right", SurfaceTraction{{-4e3, 0, -1e3}}, {{0.2, 0}, {0.25, 1}}, Release{.time = 0.5}});
-    const Budget budget = MustClose(scene, BarMesh());
-    EXPECT_GT(budget.last.fragments, 1);
-    EXPECT_GT(budget.last.plastic_work, 0.01 * budget.largest);
-    EXPECT_GT(budget.last.fracture_energy, 0.005 * budget.largest);
-    EXPECT_GT(budget.last.friction_dissipation, 0.005 * budget.largest);
-    EXPECT_EQ(budget.last.damping_dissipation > 0.005 * budget.largest, scene.damping.has_value());
-    EXPECT_GT(budget.most_in_contact, 0.001 * budget.largest);
+    const Ledger ledger = MustClose(scene, BarMesh());
+    EXPECT_GT(ledger.last.fragments, 1);
+    EXPECT_GT(ledger.last.plastic_work, 0.01 * ledger.largest);
+    EXPECT_GT(ledger.last.fracture_energy, 0.005 * ledger.largest);
+    EXPECT_GT(ledger.last.friction_dissipation, 0.005 * ledger.largest);
+    EXPECT_EQ(ledger.last.damping_dissipation > 0.005 * ledger.largest, scene.damping.has_value());
+    EXPECT_GT(ledger.most_in_contact, 0.001 * ledger.largest);
   }
 }
 

@@ -10,8 +10,8 @@
 namespace cleave {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 GalleryFinding FindingOf(bool control, bool holds) {
   GalleryFinding finding;
@@ -113,9 +113,9 @@ TEST(SceneAnswers, ListsVariantsOfCriteriaAndWhichOnlyControlsHave) {
       R"({"scenes":[{"name":"s","title":"t","paper":"p","variants":["a","b","c"],"pictured":["a"],"coarsest":1.5,
       "criteria":[{"control":false,"variants":["a"]},{"control":true,"variants":["b","a"]}]}]})");
   ASSERT_TRUE(scenes.ok()) << scenes.status();
-  EXPECT_THAT((*scenes)[0].variants, testing::ElementsAre("a", "b"));
-  EXPECT_THAT((*scenes)[0].controls, testing::ElementsAre("b"));
-  EXPECT_THAT((*scenes)[0].pictured, testing::ElementsAre("a"));
+  EXPECT_THAT((*scenes)[0].variants, ::testing::ElementsAre("a", "b"));
+  EXPECT_THAT((*scenes)[0].controls, ::testing::ElementsAre("b"));
+  EXPECT_THAT((*scenes)[0].pictured, ::testing::ElementsAre("a"));
   EXPECT_EQ((*scenes)[0].coarsest, 1.5);
 }
 
