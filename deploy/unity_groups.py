@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Says which C++ files of a target can be compiled as one: unity_groups.py FILE...
 
-Prints the number of a group for each file, with semicolons between them, as CMake's lists have. Files
-of a group define no name twice, at most MOST of them are in one, and what they include is then parsed
-once for all. Names are taken from lines that begin at the margin, which is where definitions do.
+Prints the number of a group for each file, with semicolons between them, as CMake's lists have. No file
+of a group defines a name for itself, in a namespace without a name, that another one of it so much as
+mentions: not only would two definitions clash, but a function of the one would silently stand in for
+one that the other has from a header. At most MOST files are in a group, and what they include is then
+parsed once for all. Definitions are looked for at the margin, where they begin.
 """
 
 import re
@@ -11,20 +13,29 @@ import sys
 
 MOST = 8
 
-SKIPPED = re.compile(r"(#|//|/\*|namespace\b|using (namespace\b|::)|extern\b|public:|private:|})")
+SKIPPED = re.compile(r"(#|//|/\*|namespace\b|using (namespace\b|::)|extern\b|})")
 # Tests have names of their own, which the linker would refuse to have twice.
 TESTS = re.compile(r"(TYPED_)?TEST(_F|_P)?\(")
 TYPE = re.compile(r"(?:template\b.*)?\b(?:struct|class|enum class|enum|union|using)\s+(\w+)")
 NAME = re.compile(r"(\w+)(?:\[[^]]*\])?\s*(?:\(|=|\{|;)")
 MACRO = re.compile(r"#define (\w+)")
 
+UNREAD = re.compile(r'//.*|"(?:\\.|[^"\\\n])*"')
+# Members, and names that say whose they are, mean the same wherever they stand.
+MENTION = re.compile(r"(?<![\w.])(?<!->)(?<!::)[A-Za-z_]\w*")
 
-def defined_names(text):
+
+def own_names(text):
   names = set()
+  inside = False
   for line in text.split("\n"):
+    if line.startswith("namespace {"):
+      inside = True
+    elif line.startswith("}  // namespace"):
+      inside = False
     if macro := MACRO.match(line):
       names.add(macro[1])
-    if not line or not (line[0].isalpha() or line[0] == "_"):
+    if not inside or not line or not (line[0].isalpha() or line[0] == "_"):
       continue
     if SKIPPED.match(line) or TESTS.match(line):
       continue
@@ -35,18 +46,21 @@ def defined_names(text):
 
 
 def groups_of(texts):
-  """A group for each text: the first with room in which all its names are new."""
-  groups = []  # [count, names]
+  """A group for each text: the first with room whose files bear it."""
+  groups = []  # [count, names of their own, names mentioned]
   chosen = []
-  for names in map(defined_names, texts):
+  for text in texts:
+    own = own_names(text)
+    mentioned = own | set(MENTION.findall(UNREAD.sub("", text)))
     for number, group in enumerate(groups):
-      if group[0] < MOST and not names & group[1]:
+      if group[0] < MOST and not own & group[2] and not mentioned & group[1]:
         break
     else:
       number = len(groups)
-      groups.append([0, set()])
+      groups.append([0, set(), set()])
     groups[number][0] += 1
-    groups[number][1] |= names
+    groups[number][1] |= own
+    groups[number][2] |= mentioned
     chosen.append(number)
   return chosen
 

@@ -30,6 +30,22 @@ class UnityGroups(unittest.TestCase):
       with self.subTest(first):
         self.assertEqual(unity_groups.groups_of([anonymous(first), anonymous(second)]), [0, 1])
 
+  def test_files_that_mention_a_name_of_another_are_apart(self):
+    own = anonymous("Scene BreakingScene() { return {}; }")
+    for use in ("const Scene kScene = BreakingScene();", "TEST(Bar, Breaks) {\n  BreakingScene();\n}"):
+      with self.subTest(use):
+        self.assertEqual(unity_groups.groups_of([own, anonymous(use)]), [0, 1])
+        self.assertEqual(unity_groups.groups_of([anonymous(use), own]), [0, 1])
+
+  def test_members_qualified_names_comments_and_texts_are_no_mention(self):
+    own = anonymous("int Load() { return 0; }")
+    use = anonymous('TEST(Bar, Loads) {\n  file.Load();\n  at->Load();\n  Bar::Load("Load");  // Load\n}')
+    self.assertEqual(unity_groups.groups_of([own, use]), [0, 0])
+
+  def test_what_all_may_use_may_be_mentioned(self):
+    public = "namespace cleave {\n\nint Load() { return 0; }\n\n}  // namespace cleave\n"
+    self.assertEqual(unity_groups.groups_of([public, anonymous("int Twice() { return Load(); }")]), [0, 0])
+
   def test_files_that_use_the_same_names_are_together(self):
     text = anonymous("using ::testing::Not;\n\nTEST(Bar, {0}) {{\n  const int size = 1;\n}}")
     texts = [text.replace("{0}", name) for name in ("Bends", "Breaks")]
