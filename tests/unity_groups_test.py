@@ -37,6 +37,11 @@ class UnityGroups(unittest.TestCase):
         self.assertEqual(unity_groups.groups_of([own, anonymous(use)]), [0, 1])
         self.assertEqual(unity_groups.groups_of([anonymous(use), own]), [0, 1])
 
+  def test_files_whose_headers_mention_a_name_of_another_are_apart(self):
+    own = anonymous("class ElasticLaw {};")
+    use = '#include "core/model/build_model.h"\n' + anonymous("int Other() { return 0; }")
+    self.assertEqual(unity_groups.groups_of([own, use]), [0, 1])
+
   def test_members_qualified_names_comments_and_texts_are_no_mention(self):
     own = anonymous("int Load() { return 0; }")
     use = anonymous('TEST(Bar, Loads) {\n  file.Load();\n  at->Load();\n  Bar::Load("Load");  // Load\n}')
