@@ -24,11 +24,11 @@ class Gallery(CliTest):
         text = page.read_text()
         self.assertIn("nothing differs in any bit", text)
         self.assertIn('class="good">met</td>', text)
-        self.assertIn("2 of 2 verdicts are as they should be", errors)
+        self.assertIn("5 of 5 verdicts are as they should be", errors)
         with table.open(newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual({(row["scene"], row["seeds"], row["verdict"]) for row in rows},
-                         {("locality", "1", "met")})
+                         {("locality", "1", "met"), ("locality", "1", "fails, as it should")})
         frame = next(row for row in rows if row["measured"] == "first frame that differs")
         self.assertGreater(float(frame["values"]), 2)
         picture = next((self.folder / "gallery" / "pictures").glob("locality-with-*.png"))
@@ -38,7 +38,7 @@ class Gallery(CliTest):
         # What is done is kept, and the page is the same to the last byte.
         code, _, errors = self.gallery()
         self.assertEqual((code, page.read_text()), (0, text))
-        self.assertIn("1 of 1 runs are there", errors)
+        self.assertIn("3 of 3 runs are there", errors)
         picture.unlink()
         self.assertIn("[1/1] locality with, seed 1, unstructured", self.gallery()[2])
 
@@ -54,7 +54,7 @@ exit 1
         runner.chmod(0o755)
         code, _, errors = self.gallery("--runner", runner)
         self.assertEqual(code, 1)
-        self.assertIn("1 of 1 runs failed", errors)
+        self.assertIn("3 of 3 runs failed", errors)
         text = (self.folder / "gallery" / "index.html").read_text()
         self.assertIn("no &lt;memory&gt;", text)
         self.assertIn('class="bad">not met</td>', text)
