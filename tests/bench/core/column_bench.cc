@@ -115,10 +115,15 @@ absl::Status PrintColumn() {
                 cost.linear_iterations / steps, 1e6 * iteration,
                 1e-9 * static_cast<double>(matrix_bytes) / iteration);
   }
+  const double rate = ReadingRate(matrix_bytes);
+  const double reached =
+      static_cast<double>(matrix_bytes) * costs[0].linear_iterations / costs[0].linear;
   std::printf(
-      "\nThat much memory is read, and nothing done with it, at %.1f GB/s by one thread: what the\n"
-      "linear iterations, most of a step, are bound by.\n",
-      1e-9 * ReadingRate(matrix_bytes));
+      "\nOne thread that does nothing else reads that much at %.1f GB/s. Linear iterations, most "
+      "of "
+      "a\nstep, reach %.0f %% of that: %s bound them.\n",
+      1e-9 * rate, 100 * reached / rate,
+      reached > 0.6 * rate ? "reads of memory" : "instructions, not reads of memory,");
   std::printf("\nEmbedding 16 cuts, each a sheet right through it: %.4f s.\n",
               BakeSeconds(CutColumn(), mesh, incidence));
   return absl::OkStatus();
