@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/io/plot/axis.h"
 #include "client/io/plot/labelled_curves.h"
-#include "core/base/faults.h"
 #include "core/base/status.h"
 
 namespace cleave {
@@ -17,24 +17,10 @@ namespace {
 constexpr double kSeenShare = 0.02;
 
 absl::Status CheckCurves(std::span<const PlottedCurve> curves) {
-  Faults faults;
-  if (curves.empty()) faults.Error("curves", "there are none to plot");
-  for (size_t i = 0; i < curves.size(); ++i) {
-    const std::string field = absl::StrCat("curves[", i, "]");
-    const PlottedCurve& curve = curves[i];
-    if (curve.strain.empty()) faults.Error(field, "has no points");
-    if (curve.nominal_stress.size() != curve.strain.size() ||
-        curve.true_stress.size() != curve.strain.size()) {
-      faults.Error(field, "has columns of different length");
-    }
-    for (const auto* column : {&curve.strain, &curve.nominal_stress, &curve.true_stress}) {
-      if (std::all_of(column->begin(), column->end(), [](double x) { return std::isfinite(x); }))
-        continue;
-      faults.Error(field, "has a number that is not finite");
-      break;
-    }
-  }
-  return faults.ToStatus();
+  std::vector<std::vector<std::span<const double>>> columns;
+  for (const PlottedCurve& curve : curves)
+    columns.push_back({curve.strain, curve.nominal_stress, curve.true_stress});
+  return CheckColumns(columns);
 }
 
 std::vector<PlotPoint> PointsOf(const std::vector<double>& strain,

@@ -3,32 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/io/plot/axis.h"
 #include "client/io/plot/labelled_curves.h"
-#include "core/base/faults.h"
 #include "core/base/status.h"
 
 namespace cleave {
 namespace {
 
 absl::Status CheckCurves(std::span<const ForceCurve> curves) {
-  Faults faults;
-  if (curves.empty()) faults.Error("curves", "there are none to plot");
-  for (size_t i = 0; i < curves.size(); ++i) {
-    const std::string field = absl::StrCat("curves[", i, "]");
-    const ForceCurve& curve = curves[i];
-    if (curve.force.empty()) faults.Error(field, "has no points");
-    if (curve.force.size() != curve.displacement.size())
-      faults.Error(field, "has columns of different length");
-    const auto finite = [](double x) { return std::isfinite(x); };
-    if (!std::all_of(curve.force.begin(), curve.force.end(), finite) ||
-        !std::all_of(curve.displacement.begin(), curve.displacement.end(), finite)) {
-      faults.Error(field, "has a number that is not finite");
-    }
-  }
-  return faults.ToStatus();
+  std::vector<std::vector<std::span<const double>>> columns;
+  for (const ForceCurve& curve : curves) columns.push_back({curve.displacement, curve.force});
+  return CheckColumns(columns);
 }
 
 }  // namespace

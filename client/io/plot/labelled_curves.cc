@@ -1,11 +1,13 @@
 #include "client/io/plot/labelled_curves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "core/base/faults.h"
 
 namespace cleave {
 namespace {
@@ -26,6 +28,25 @@ void Mark(Drawing& drawing, const LabelledCurve& curve, double x, double y,
 }
 
 }  // namespace
+
+absl::Status CheckColumns(std::span<const std::vector<std::span<const double>>> curves) {
+  Faults faults;
+  if (curves.empty()) faults.Error("curves", "there are none to plot");
+  for (size_t i = 0; i < curves.size(); ++i) {
+    const std::string field = absl::StrCat("curves[", i, "]");
+    const size_t length = curves[i].front().size();
+    if (length == 0) faults.Error(field, "has no points");
+    bool equal = true, finite = true;
+    for (const std::span<const double> column : curves[i]) {
+      equal = equal && column.size() == length;
+      finite = finite &&
+               std::all_of(column.begin(), column.end(), [](double x) { return std::isfinite(x); });
+    }
+    if (!equal) faults.Error(field, "has columns of different length");
+    if (!finite) faults.Error(field, "has a number that is not finite");
+  }
+  return faults.ToStatus();
+}
 
 std::string DrawLabelledCurves(std::span<const LabelledCurve> curves, const Axis& horizontal,
                                const Axis& vertical, const CurveTitles& titles) {

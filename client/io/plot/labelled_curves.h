@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "client/io/plot/axis.h"
 #include "client/io/plot/drawing.h"
 
@@ -27,6 +28,10 @@ struct CurveTitles {
   std::string vertical;
   std::string dashed = {};  // what dashed curves are, for the legend
 };
+
+// Of the columns of each curve. InvalidArgument, naming everything wrong: no curves, columns of
+// different length or none, numbers that are not finite.
+absl::Status CheckColumns(std::span<const std::vector<std::span<const double>>> curves);
 
 // The bytes of an SVG picture, 900 units wide.
 std::string DrawLabelledCurves(std::span<const LabelledCurve> curves, const Axis& horizontal,

@@ -10,6 +10,7 @@
 #include "core/base/counter_rng.h"
 #include "core/model/elastic_term.h"
 #include "core/model/tet_batches.h"
+#include "tests/unit/core/model/dense_term.h"
 
 namespace cleave {
 namespace {
@@ -38,28 +39,9 @@ class EdgeProjectedTermTest : public ::testing::Test {
       displacements.push_back(size * Double4{Draw(node), Draw(node), Draw(node), 0});
     return displacements;
   }
-  static Eigen::VectorXd Forces(TetTerm& term, const NodalVector& displacements) {
-    NodalVector forces(4, Splat(0));
-    term.AddForces(displacements, forces);
-    Eigen::VectorXd flat(12);
-    for (int i = 0; i < 12; ++i) flat[i] = forces[static_cast<size_t>(i / 3)][i % 3];
-    return flat;
-  }
   Eigen::MatrixXd Stiffness(TetTerm& term, const NodalVector& displacements,
                             Curvature curvature) const {
-    EdgeBlocks blocks(EdgeBlocksSize(6), 0.0f);
-    term.AddStiffness(displacements, curvature, blocks);
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(12, 12);
-    for (size_t edge = 0; edge < 6; ++edge) {
-      const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
-      const Eigen::Matrix3d block =
-          Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
-      matrix.block<3, 3>(i, j) -= block;
-      matrix.block<3, 3>(j, i) -= block.transpose();
-      matrix.block<3, 3>(i, i) += block;
-      matrix.block<3, 3>(j, j) += block.transpose();
-    }
-    return matrix;
+    return DenseStiffness(term, incidence_, displacements, curvature);
   }
   static NodalVector Moved(NodalVector displacements, int coordinate, double by) {
     displacements[static_cast<size_t>(coordinate / 3)][coordinate % 3] += by;
@@ -92,8 +74,8 @@ TEST_F(EdgeProjectedTermTest, IntactATetIsAStVenantKirchhoffSolid) {
     const NodalVector displacements = Random(0.5);
     const double energy = elastic_->TetEnergy(0, displacements);
     EXPECT_NEAR(term.TetEnergy(0, displacements), energy, 1e-12 * energy);
-    const Eigen::VectorXd forces = Forces(*elastic_, displacements);
-    EXPECT_NEAR((Forces(term, displacements) - forces).norm(), 0, 1e-12 * forces.norm());
+    const Eigen::VectorXd forces = DenseForces(*elastic_, displacements);
+    EXPECT_NEAR((DenseForces(term, displacements) - forces).norm(), 0, 1e-12 * forces.norm());
   }
 }
 
@@ -117,7 +99,7 @@ TEST_F(EdgeProjectedTermTest, ForcesAreTheEnergysDescentForEveryMask) {
   for (int mask = 0; mask < kEdgeMasks; ++mask) {
     EdgeProjectedTerm term = Projected(static_cast<EdgeMask>(mask));
     const NodalVector displacements = Random(0.5);
-    const Eigen::VectorXd forces = Forces(term, displacements);
+    const Eigen::VectorXd forces = DenseForces(term, displacements);
     const double h = 1e-5;
     for (int i = 0; i < 12; ++i) {
       const double slope = (term.TetEnergy(0, Moved(displacements, i, h)) -
@@ -136,9 +118,9 @@ TEST_F(EdgeProjectedTermTest, ExactStiffnessIsTheForcesDerivativeAndTheOtherHasN
     const Eigen::MatrixXd exact = Stiffness(term, displacements, Curvature::kExact);
     const double h = 1e-5;
     for (int i = 0; i < 12; ++i) {
-      const Eigen::VectorXd column =
-          -(Forces(term, Moved(displacements, i, h)) - Forces(term, Moved(displacements, i, -h))) /
-          (2 * h);
+      const Eigen::VectorXd column = -(DenseForces(term, Moved(displacements, i, h)) -
+                                       DenseForces(term, Moved(displacements, i, -h))) /
+                                     (2 * h);
       EXPECT_NEAR((column - exact.col(i)).norm(), 0, 3e-6 * exact.norm() + 1e-12) << mask;
     }
     const Eigen::MatrixXd semidefinite = Stiffness(term, displacements, Curvature::kSemidefinite);
@@ -155,7 +137,7 @@ TEST_F(EdgeProjectedTermTest, ForcesAddUpToNoForceAndNoTorqueAndNoneCrossesASepa
   for (int mask = 0; mask < kEdgeMasks; ++mask) {
     EdgeProjectedTerm term = Projected(static_cast<EdgeMask>(mask));
     const NodalVector displacements = Random(0.5);
-    const Eigen::VectorXd forces = Forces(term, displacements);
+    const Eigen::VectorXd forces = DenseForces(term, displacements);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
     for (int node = 0; node < 4; ++node) {
       const auto n = static_cast<size_t>(node);
@@ -197,7 +179,7 @@ TEST_F(EdgeProjectedTermTest, DoesNoWorkRoundAClosedCycle) {
           between[node] = corners[side][node] + share * step;
           for (int axis = 0; axis < 3; ++axis) way[3 * static_cast<int>(node) + axis] = step[axis];
         }
-        const double part = 0.5 * Forces(term, between).dot(way);
+        const double part = 0.5 * DenseForces(term, between).dot(way);
         work += part;
         exchanged += std::abs(part);
       }
@@ -241,7 +223,7 @@ TEST_F(EdgeProjectedTermTest, IsFiniteInsideOutAndCollapsed) {
     }
     for (const NodalVector& displacements : {collapsed, mirrored, Random(1e3)}) {
       EXPECT_TRUE(std::isfinite(term.TetEnergy(0, displacements)));
-      EXPECT_TRUE(Forces(term, displacements).allFinite());
+      EXPECT_TRUE(DenseForces(term, displacements).allFinite());
       EXPECT_TRUE(Stiffness(term, displacements, Curvature::kSemidefinite).allFinite());
     }
     // A reflection changes no length.

@@ -10,6 +10,7 @@
 #include "core/mesh/incidence.h"
 #include "core/model/tet_batches.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/model/dense_term.h"
 
 namespace cleave {
 namespace {
@@ -31,27 +32,10 @@ class ElasticTermTest : public ::testing::Test {
     return term_->AddForces(displacements, forces);
   }
   Eigen::VectorXd Forces(const NodalVector& displacements) const {
-    NodalVector forces(displacements.size(), Splat(0));
-    term_->AddForces(displacements, forces);
-    Eigen::VectorXd flat(static_cast<int>(3 * forces.size()));
-    for (int i = 0; i < flat.size(); ++i) flat[i] = forces[static_cast<size_t>(i / 3)][i % 3];
-    return flat;
+    return DenseForces(*term_, displacements);
   }
   Eigen::MatrixXd Stiffness(const NodalVector& displacements, Curvature curvature) const {
-    EdgeBlocks blocks(EdgeBlocksSize(incidence_.edge_count()), 0.0f);
-    term_->AddStiffness(displacements, curvature, blocks);
-    const auto size = static_cast<int>(3 * mesh_.node_count());
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
-    for (size_t edge = 0; edge < incidence_.edges.size(); ++edge) {
-      const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
-      const Eigen::Matrix3d block =
-          Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
-      matrix.block<3, 3>(i, j) -= block;
-      matrix.block<3, 3>(j, i) -= block.transpose();
-      matrix.block<3, 3>(i, i) += block;
-      matrix.block<3, 3>(j, j) += block.transpose();
-    }
-    return matrix;
+    return DenseStiffness(*term_, incidence_, displacements, curvature);
   }
 
   const TetMesh mesh_ = KuhnBox({2, 1, 1}, {2, 1, 1});

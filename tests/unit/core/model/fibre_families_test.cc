@@ -8,6 +8,7 @@
 #include "core/mesh/incidence.h"
 #include "core/model/elastic_term.h"
 #include "tests/unit/core/mesh/kuhn_mesh.h"
+#include "tests/unit/core/model/dense_term.h"
 
 namespace cleave {
 namespace {
@@ -35,13 +36,6 @@ class FibreFamiliesTest : public ::testing::TestWithParam<Precision> {
     }
     return displacements;
   }
-  Eigen::VectorXd Forces(TetTerm& term, const NodalVector& displacements) const {
-    NodalVector forces(displacements.size(), Splat(0));
-    term.AddForces(displacements, forces);
-    Eigen::VectorXd flat(static_cast<int>(3 * forces.size()));
-    for (int i = 0; i < flat.size(); ++i) flat[i] = forces[static_cast<size_t>(i / 3)][i % 3];
-    return flat;
-  }
   // Every tet its own way, some of them inside out where `share` is large.
   NodalVector Wrung(double share) const {
     NodalVector displacements;
@@ -52,23 +46,9 @@ class FibreFamiliesTest : public ::testing::TestWithParam<Precision> {
     }
     return displacements;
   }
-  // The matrix of a term, put together from the blocks of edges.
   Eigen::MatrixXd Stiffness(TetTerm& term, const NodalVector& displacements,
                             Curvature curvature) const {
-    EdgeBlocks blocks(EdgeBlocksSize(incidence_.edge_count()), 0.0f);
-    term.AddStiffness(displacements, curvature, blocks);
-    const auto size = static_cast<int>(3 * mesh_.node_count());
-    Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
-    for (size_t edge = 0; edge < incidence_.edges.size(); ++edge) {
-      const int i = 3 * incidence_.edges[edge][0], j = 3 * incidence_.edges[edge][1];
-      const Eigen::Matrix3d block =
-          Eigen::Map<const Eigen::Matrix3f>(blocks.data() + 9 * edge).cast<double>();
-      stiffness.block<3, 3>(i, j) -= block;
-      stiffness.block<3, 3>(j, i) -= block.transpose();
-      stiffness.block<3, 3>(i, i) += block;
-      stiffness.block<3, 3>(j, j) += block.transpose();
-    }
-    return stiffness;
+    return DenseStiffness(term, incidence_, displacements, curvature);
   }
   // What fibres along x have of the energy, J.
   double FibreEnergy(TetTerm& term, const NodalVector& displacements) const {
@@ -132,7 +112,8 @@ TEST_P(FibreFamiliesTest, ExactStiffnessIsTheForcesDerivative) {
     NodalVector up = displacements, down = displacements;
     up[static_cast<size_t>(i / 3)][i % 3] += h;
     down[static_cast<size_t>(i / 3)][i % 3] -= h;
-    const Eigen::VectorXd column = -(Forces(*in_double, up) - Forces(*in_double, down)) / (2 * h);
+    const Eigen::VectorXd column =
+        -(DenseForces(*in_double, up) - DenseForces(*in_double, down)) / (2 * h);
     EXPECT_NEAR((column - stiffness.col(i)).norm(), 0, 3e-6 * stiffness.norm()) << i;
   }
 }
@@ -141,7 +122,8 @@ TEST_P(FibreFamiliesTest, ProjectedStiffnessOfFibresHasNoNegativeEigenvalue) {
   const std::vector<Vec3> directions = {{1, 0, 0}, {0.6, 0.8, 0}, {0, 0.6, -0.8}};
   const std::unique_ptr<TetTerm> term = TermWith(GetParam(), directions);
   const std::unique_ptr<TetTerm> bare = TermWith(GetParam(), {});
-  for (const double share : {1.0, 4.0}) {  // some fibres pressed; then the rest stretched or turned over
+  for (const double share :
+       {1.0, 4.0}) {  // some fibres pressed; then the rest stretched or turned over
     const NodalVector displacements = Wrung(share);
     EXPECT_EQ(term->ChooseBranches(displacements, BranchChoice::kStart), share > 1);
     const auto least_over_largest = [&](Curvature curvature) {
